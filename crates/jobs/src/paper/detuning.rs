@@ -3,7 +3,7 @@
 
 use super::family::{Family, SMOOTH};
 use super::item::Item;
-use super::measures::{Ladder, Pick, RULE, decided, verdict};
+use super::measures::{Ladder, Pick, RULE, decided, ends, verdict};
 use super::plan::{Plan, stiffness};
 use retune_report::document::Verdict;
 use retune_study::joined;
@@ -74,11 +74,6 @@ impl Structures<'_> {
 /// Whether something holds of all structures of a range, with either damper.
 fn with_each(of: &Range<usize>, holds: impl Fn(usize, usize, Pick) -> bool) -> [Option<bool>; 2] {
     DAMPERS.map(|scene| decided(|pick| of.clone().all(|i| holds(i, scene, pick))))
-}
-
-/// The least and the largest of some numbers.
-fn ends(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
-    numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], one| [low.min(one), high.max(one)])
 }
 
 fn percent(share: f64) -> String {

@@ -43,6 +43,11 @@ impl Spread {
     }
 }
 
+/// The least and the largest of some numbers.
+pub fn ends(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
+    numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], one| [low.min(one), high.max(one)])
+}
+
 /// What a function gives for each of some things, side by side.
 pub fn for_each<T: Sync, U: Send>(
     all: &[T],

@@ -45,13 +45,12 @@ impl Forced {
 pub fn forced(dampers: &[Tuned]) -> Vec<Forced> {
     let mut all = Vec::new();
     for (number, damper) in dampers.iter().enumerate() {
-        let (Some(at), Some(own)) = (damper.of(Tuning::Nominal), damper.study.value_of(Parameter::P)) else {
-            continue;
-        };
+        let (at, study) = (damper.of(Tuning::Nominal), damper.study());
+        let Some((at, own)) = at.zip(study.value_of(Parameter::P)) else { continue };
         let series = |gaps: &str| {
             let one = |step: i32| {
                 let force = own * 2_f64.powf(-0.25 * f64::from(step));
-                (force, under(&damper.study, damper.samples, &at, gaps, force).unwrap_or([f64::NAN; 2]))
+                (force, under(study, damper.samples, &at, gaps, force).unwrap_or([f64::NAN; 2]))
             };
             let proportional = gaps == GAPS[1];
             Forced { damper: number, proportional, points: (0..=STEPS).into_par_iter().map(one).collect() }

@@ -4,8 +4,8 @@
 //! the nominal design and the widest, the least E1max with at least this range (`fminsearch`, from the best design so far). The
 //! front is what no design dominates, evaluated again on the common samples, at the tolerance of the study.
 
-use super::range::{Care, Criterion, Range, Threshold, range};
-use super::tuned::{Tuned, Tuning};
+use super::range::{Care, Range, Threshold};
+use super::tuned::{OWN, STILL, Tuned, Tuning, on_samples};
 use crate::columns;
 use crate::searches::Searches;
 use crate::tune::objective::{kept, loose};
@@ -42,46 +42,48 @@ const MOST: usize = 32;
 /// A value above every E1max, J: of a design with too small a range.
 const TOO_NARROW: f64 = 1e6;
 
+/// The columns of the ends of ranges: with the band of the study, and with one that stays.
+pub(super) const ENDS: [&str; 4] = ["from", "to", "still_from", "still_to"];
+
 /// A design with both measures, on the common samples.
 #[derive(Clone, Debug)]
 pub struct Point {
     /// The number of its damper.
     pub damper: usize,
-    /// How it was tuned, if it is one that is kept; none of one between the nominal design and that with the widest range.
-    pub tuning: Option<Tuning>,
+    /// How it was tuned.
+    pub tuning: Tuning,
     /// The design.
     pub at: Design,
     /// E1max at the nominal stiffness, J.
     pub e1_max: f64,
-    /// Its retention range.
-    pub range: Option<Range>,
-    /// The same with the band where it is at the nominal k1, if the band of its study moves.
-    pub still: Option<Range>,
+    /// Its retention range with each band; none with one that its study does not have.
+    pub ranges: [Option<Range>; 2],
 }
 
 impl Point {
     /// A design of a damper, on the common samples.
-    pub fn new(
-        (damper, tuned): (usize, &Tuned),
-        tuning: Option<Tuning>,
-        at: Design,
-        Criterion { threshold, still }: &Criterion,
-    ) -> Self {
+    pub fn new((damper, tuned): (usize, &Tuned), tuning: Tuning, at: Design) -> Self {
         let e1_max = tuned.energy(&at, tuned.nominal());
-        let still = still.as_ref();
-        let still = still.and_then(|still| range(&still.study, tuned.samples, &at, &still.threshold));
-        let range = range(&tuned.study, tuned.samples, &at, threshold);
-        Self { damper, tuning, at, e1_max, range, still }
+        let range =
+            |band: usize| range(tuned.studies.get(band)?, tuned.samples, &at, tuned.thresholds.get(band)?);
+        Self { damper, tuning, at, e1_max, ranges: [OWN, STILL].map(range) }
     }
 
-    /// The name of its tuning in tables.
-    pub fn tuning_name(&self) -> &'static str {
-        self.tuning.map_or(FRONT, Tuning::name)
+    /// Its retention range.
+    pub fn range(&self) -> Option<Range> {
+        self.ranges[OWN]
+    }
+
+    /// The ends of its ranges, by the names of [`ENDS`].
+    pub(super) fn ends(&self) -> [Option<f64>; 4] {
+        let [own, still] = self.ranges;
+        let [from, to] = [|range: Range| range.from, |range: Range| range.to];
+        [own.map(from), own.map(to), still.map(from), still.map(to)]
     }
 
     /// The factor by which k1 may rise and fall; 1 without a range.
     pub fn factor(&self) -> f64 {
-        self.range.map_or(1.0, |range| range.factor())
+        self.range().map_or(1.0, |range| range.factor())
     }
 
     /// Whether it is of the same damper, as good as `other` in both measures and better in one of them.
@@ -96,25 +98,32 @@ impl Point {
 
 /// The designs that no other of the same damper dominates, the least E1max first.
 pub fn front(points: &[Point], damper: usize) -> Vec<&Point> {
-    let good = |point: &&Point| point.damper == damper && point.range.is_some();
+    let good = |point: &&Point| point.damper == damper && point.range().is_some();
     let dominated = |point: &Point| points.iter().any(|other| other.dominates(point));
     let mut front: Vec<&Point> = points.iter().filter(good).filter(|point| !dominated(point)).collect();
     front.sort_by(|a, b| a.e1_max.total_cmp(&b.e1_max));
     front
 }
 
+/// The range of a design by the objective of a study, on so many samples of its band.
+fn range(study: &Study, samples: Option<usize>, at: &Design, threshold: &Threshold) -> Option<Range> {
+    let study = on_samples(study, samples, at)?;
+    let (goal, settings) = (study.goal(), study.solver.settings());
+    threshold.range(Care::RESULT, |k1, cutoff| {
+        let scene = study.scene_with(&[Setting::new(Parameter::K1, k1)]);
+        let found = scene.ok().and_then(|scene| goal.evaluate(&scene, &settings, cutoff).ok());
+        found.map_or(f64::INFINITY, |found| found.value)
+    })
+}
+
 /// The designs between the nominal one and that with the widest range, of one damper.
-///
-/// # Errors
-/// The study cannot be searched, or the journal not be written.
 pub fn trade(
     number: usize,
     tuned: &Tuned,
-    criterion: &Criterion,
     searches: &Searches,
     watch: &dyn Observer,
 ) -> Result<Vec<Point>, Error> {
-    let (study, threshold) = (&tuned.study, &criterion.threshold);
+    let (study, threshold) = (tuned.study(), &tuned.thresholds[OWN]);
     let search = study.search().map_err(Error::rule(study))?;
     let [of, of_ranges] = [RTOL, OF_RANGES].map(|rtol| loose(study, &search, &search.variables, rtol));
     let stages = ["E1max", "range"].map(|what| format!("{number} {what}"));
@@ -122,11 +131,11 @@ pub fn trade(
     let evaluated = Evaluated { study, of: &of, of_ranges: &of_ranges, threshold, searches, stages, all };
     // The designs that are kept come first, those within the bounds of the search.
     let mut least = 0.0;
-    for kept in &tuned.kept {
-        let x: Vec<f64> = search.variables.iter().map(|variable| kept.at.get(*variable)).collect();
+    for (tuning, at) in &tuned.kept {
+        let x: Vec<f64> = search.variables.iter().map(|variable| at.get(*variable)).collect();
         if search.options.bounds.iter().zip(&x).all(|(bounds, value)| bounds.contain(*value)) {
             let (_, width) = evaluated.evaluate(&x);
-            if kept.tuning == Tuning::Nominal {
+            if *tuning == Tuning::Nominal {
                 least = width;
             }
         }
@@ -160,12 +169,9 @@ pub fn trade(
         searches.journal().check()?;
     }
     let designs = evaluated.front(&search.variables)?;
-    watch.log(&format!(
-        "{}: {} designs between the least E1max and the widest range",
-        tuned.name,
-        designs.len()
-    ))?;
-    Ok(designs.into_iter().map(|at| Point::new((number, tuned), None, at, criterion)).collect())
+    let (name, count) = (&tuned.name, designs.len());
+    watch.log(&format!("{name}: {count} designs between the least E1max and the widest range"))?;
+    Ok(designs.into_iter().map(|at| Point::new((number, tuned), Tuning::Front, at)).collect())
 }
 
 /// The designs of a damper that were evaluated: E1max at the nominal stiffness, J, and the factor of its range less 1.
@@ -250,17 +256,11 @@ impl Evaluated<'_> {
 pub fn table<'a>(dampers: &[Tuned], points: impl Iterator<Item = &'a Point> + Clone) -> Table {
     let parameters = columns::of_designs(points.clone().map(|point| &point.at));
     let names = [&["damper", "tuning"], &*columns::symbols(&parameters), &["E1max"]].concat();
-    let ends = ["from", "to", "still_from", "still_to"].map(|end| Column::new(end, Parameter::K1.unit()));
-    let mut table = Table::new(names.into_iter().map(columns::column).chain(ends));
-    for point in points {
-        let first = cells![dampers[point.damper].name.as_str(), point.tuning_name()];
-        let ends = [point.range, point.still].map(|range| range.map(|range| [range.from, range.to]));
-        let ends = ends.map(|ends| ends.map_or([Cell::Empty, Cell::Empty], |ends| ends.map(Cell::from)));
+    let ends = ENDS.map(|end| Column::new(end, Parameter::K1.unit()));
+    let row = |point: &Point| {
+        let first = cells![dampers[point.damper].name.as_str(), point.tuning.name()];
         let design = columns::cells_of(&point.at, &parameters);
-        table.push([first, design, cells![point.e1_max], ends.concat()].concat());
-    }
-    table
+        [first, design, cells![point.e1_max], point.ends().map(Cell::from).into()].concat()
+    };
+    Table::new(names.into_iter().map(columns::column).chain(ends)).with(points.map(row))
 }
-
-/// The tuning of a design between the nominal one and that with the widest range.
-const FRONT: &str = "front";
