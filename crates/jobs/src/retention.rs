@@ -83,7 +83,7 @@ pub fn retention(
         let mut searches = Searches::new(directory, &job.order, watch);
         let (mut dampers, mut designs) = (Vec::new(), Vec::new());
         for row in &rows {
-            let (tuned, rows) = anew::tune(row, &said, &others, &mut searches, watch)?;
+            let (tuned, rows) = anew::tune(row, &said, &others, &mut searches)?;
             designs.extend(paper(&tuned));
             designs.extend(rows.into_iter().map(|row| on_common_samples(&tuned, row, &k1)));
             dampers.push(tuned.judged()?);
@@ -93,7 +93,7 @@ pub fn retention(
         let (mut kept, mut points) = (Vec::new(), Vec::new());
         for (number, damper) in dampers.iter().enumerate() {
             kept.extend(damper.kept.iter().map(|(tuning, at)| Point::new((number, damper), *tuning, *at)));
-            points.extend(trade::trade(number, damper, &searches, watch)?);
+            points.extend(trade::trade(number, damper, &searches)?);
         }
         directory.write(FORCES, &force::table(&dampers, &forced).csv())?;
         directory.write(CURVES, &curves::table(&dampers, &curves).csv())?;

@@ -12,7 +12,8 @@ use retune_study::Study;
 pub struct Searches<'a> {
     directory: &'a Directory,
     order: &'a Order,
-    watch: &'a dyn Observer,
+    /// Who is told of them.
+    pub watch: &'a dyn Observer,
     /// The results made so far.
     pub results: Vec<Directory>,
     /// The error of the first search that found none within its limits.

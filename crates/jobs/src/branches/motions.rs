@@ -52,7 +52,6 @@ impl Motions {
         Self { study, largest, branches, margin: None, basins: None }
     }
 
-    /// The parameter that they are followed along.
     pub(super) fn over(&self) -> Parameter {
         self.branches.plan.parameter
     }
@@ -119,7 +118,6 @@ pub(super) fn energy(orbit: &Orbit) -> f64 {
     orbit.seen.largest(Measure::Energy)
 }
 
-/// The periods and impacts of a motion in words.
 pub(super) fn kind(orbit: &Orbit) -> String {
     periodic(orbit.periods, &orbit.seen.impacts)
 }

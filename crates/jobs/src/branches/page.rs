@@ -16,7 +16,6 @@ use retune_study::{counted, rounded, short};
 /// Most rows of a table on the page; the files hold all.
 const MOST: usize = 40;
 
-/// Writes the page in both forms, and its figures.
 pub fn write(motions: &Motions, directory: &Directory) -> Result<(), Error> {
     let symbol = motions.over().symbol();
     let caption = format!("E1max and stroke of the periodic motions against {symbol}");
@@ -45,7 +44,6 @@ const EVENTS: &str = "At a fold a branch turns back: stable and unstable motions
     period doubling a motion of twice the period branches off, at a Neimark-Sacker bifurcation amplitude-modulated ones. At a grazing an impact \
     begins or ends, at no speed; a Hertz contact is soft enough for the branch to go on.";
 
-/// What was done.
 fn plan_words(motions: &Motions) -> String {
     let plan = &motions.branches.plan;
     let (symbol, unit, [from, to]) = (plan.parameter.symbol(), plan.parameter.unit(), plan.range);
@@ -134,7 +132,6 @@ pub fn answer(motions: &Motions) -> Vec<String> {
     words
 }
 
-/// A closed branch in words.
 fn isola(motions: &Motions, number: usize, branch: &Branch) -> Option<String> {
     if branch.ends != [End::Closed; 2] {
         return None;
@@ -158,7 +155,6 @@ fn span(branch: &Branch) -> [f64; 2] {
     [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
 }
 
-/// The branches.
 fn branches(motions: &Motions) -> Block {
     let rows = motions.branches.branches.iter().enumerate().take(MOST).map(|(number, branch)| {
         let stable = (0..branch.points.len()).filter(|i| branch.is_stable_at(*i)).count();

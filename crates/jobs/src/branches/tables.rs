@@ -29,7 +29,6 @@ pub const STATES: &str = "states.csv";
 /// A row for each start of a plane: the number of the motion on which it ends.
 pub const STARTS: &str = "starts.csv";
 
-/// All of them, each with the name of its file.
 pub fn tables(motions: &Motions) -> Vec<(&'static str, Table)> {
     let mut all = vec![
         (BRANCHES, branches(motions)),

@@ -19,9 +19,7 @@ pub(super) const CONTINUED: &str = "not certified";
 /// A damper under a bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Under {
-    /// The number of the damper.
     pub damper: usize,
-    /// The bounded quantity.
     pub sweep: Sweep,
     /// The bound, in the unit of the sweep.
     pub bound: f64,
@@ -42,9 +40,7 @@ pub(super) fn at_most(sweep: Sweep, bound: impl Display) -> String {
 /// A design, evaluated on the samples of the study of fronts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
-    /// The number of its damper.
     pub damper: usize,
-    /// Its design.
     pub at: Design,
     /// The worst E1max over the band, J.
     pub e1_max: f64,
@@ -54,7 +50,6 @@ pub struct Candidate {
     pub stroke: f64,
     /// The largest contact force in any run, N.
     pub force: f64,
-    /// The verdict of its certificate.
     pub verdict: &'static str,
     /// The reason for it, if it has a certificate.
     pub reason: String,

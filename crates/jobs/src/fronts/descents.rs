@@ -9,10 +9,10 @@
 use super::candidate::{Candidate, Under};
 use super::designs::Fronts;
 use super::places::{about, on_sides, scattered, starts};
+use crate::Error;
 use crate::searches::Searches;
 use crate::tune::descent::descend;
 use crate::tune::objective::searched;
-use crate::{Error, Observer};
 use rayon::prelude::*;
 use retune_model::{Design, Parameter, PerVariable};
 use retune_store::Journal;
@@ -66,12 +66,7 @@ impl Task {
 
 impl Fronts {
     /// Makes descents, and then those that they give reason for, until nothing is gained.
-    pub(super) fn go_down(
-        &mut self,
-        first: Vec<Task>,
-        searches: &Searches,
-        watch: &dyn Observer,
-    ) -> Result<(), Error> {
+    pub(super) fn go_down(&mut self, first: Vec<Task>, searches: &Searches) -> Result<(), Error> {
         let bounds = self.all();
         let (mut tasks, mut done) = (first, Vec::new());
         let mut followed: Vec<Option<Candidate>> = vec![None; bounds.len()];
@@ -91,7 +86,7 @@ impl Fronts {
                 break;
             }
             let before: Vec<Option<Candidate>> = bounds.iter().map(|under| self.best(*under)).collect();
-            let found = self.ends(&tasks, searches, watch)?;
+            let found = self.ends(&tasks, searches)?;
             self.designs.extend(found);
             let mut said = format!("round {round}: {}", counted(tasks.len() as u64, "descent"));
             done.append(&mut tasks);
@@ -108,19 +103,14 @@ impl Fronts {
                     tasks.extend(self.beside(&best, *under));
                 }
             }
-            watch.log(&said)?;
+            searches.watch.log(&said)?;
         }
         Ok(())
     }
 
     /// The ends of descents that keep a value.
-    fn ends(
-        &self,
-        tasks: &[Task],
-        searches: &Searches,
-        watch: &dyn Observer,
-    ) -> Result<Vec<Candidate>, Error> {
-        let bar = watch.progress("descents", tasks.len() as u64);
+    fn ends(&self, tasks: &[Task], searches: &Searches) -> Result<Vec<Candidate>, Error> {
+        let bar = searches.watch.progress("descents", tasks.len() as u64);
         let end = |task: &Task| -> Result<Option<Candidate>, Error> {
             let end = task.end(self.under(task.under, Vec::new())?, searches.journal())?;
             bar.inc(1);

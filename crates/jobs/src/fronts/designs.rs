@@ -33,7 +33,6 @@ pub type Row<'a> = (Under, Option<&'a Candidate>);
 /// The designs that all searches found.
 #[derive(Debug)]
 pub struct Fronts {
-    /// The plan of the study of fronts.
     pub plan: FrontsPlan,
     /// Those of the searches, in their order.
     pub designs: Vec<Candidate>,
@@ -48,13 +47,9 @@ pub struct Fronts {
 /// A design that is certified: below the best of the first damper under the same bound.
 #[derive(Debug)]
 pub struct Certified {
-    /// Its bound.
     pub under: Under,
-    /// The design.
     pub design: Candidate,
-    /// The name of the certificate's file.
     pub file: String,
-    /// The certificate.
     pub certificate: Certificate,
 }
 
@@ -99,7 +94,6 @@ impl Fronts {
         front
     }
 
-    /// The name of a damper.
     pub fn name(&self, damper: usize) -> &str {
         self.plan.dampers.get(damper).map_or("", |(name, _)| name)
     }

@@ -5,12 +5,12 @@
 use super::candidate::{CONTINUED, Candidate, Under, at_most, by_excess};
 use super::descents::Task;
 use super::designs::{Fronts, GIVEN};
+use crate::Error;
 use crate::certify::judge;
 use crate::needs::Largest;
 use crate::resampled::{finer, worst};
 use crate::searches::Searches;
 use crate::tune::ends::Ends;
-use crate::{Error, Observer};
 use rayon::prelude::*;
 use retune_model::{Design, Measure, PerVariable, Scene};
 use retune_optim::Limit;
@@ -19,8 +19,7 @@ use retune_study::{FrontsPlan, Optimize, Study, Sweep, bounded, clipped};
 /// A search keeps this much below a limit, for between its samples a stroke or a force may be a little larger.
 const ROOM: f64 = 0.99;
 
-/// Makes all searches.
-pub(super) fn search(plan: FrontsPlan, searches: &Searches, watch: &dyn Observer) -> Result<Fronts, Error> {
+pub(super) fn search(plan: FrontsPlan, searches: &Searches) -> Result<Fronts, Error> {
     let (designs, given, certified) = (Vec::new(), Vec::new(), Vec::new());
     let mut fronts = Fronts { plan, designs, given, none: None, certified };
     let count = fronts.plan.dampers.len();
@@ -35,9 +34,9 @@ pub(super) fn search(plan: FrontsPlan, searches: &Searches, watch: &dyn Observer
     }
     let mut tasks = Vec::new();
     for damper in 0..count {
-        tasks.extend(fronts.tune(damper, searches, watch)?);
+        tasks.extend(fronts.tune(damper, searches)?);
     }
-    fronts.go_down(tasks, searches, watch)?;
+    fronts.go_down(tasks, searches)?;
     fronts.judge()?;
     let bare = |(_, study): &(String, Study)| Largest::of(study, &Scene { damper: None, ..study.scene });
     fronts.none = fronts.plan.dampers.last().and_then(bare);
@@ -48,7 +47,7 @@ pub(super) fn search(plan: FrontsPlan, searches: &Searches, watch: &dyn Observer
 impl Fronts {
     /// The searches of a damper under all bounds, side by side; the descents that begin where they came to. A steady response is exact over
     /// the whole band: its searches need none.
-    fn tune(&mut self, damper: usize, searches: &Searches, watch: &dyn Observer) -> Result<Vec<Task>, Error> {
+    fn tune(&mut self, damper: usize, searches: &Searches) -> Result<Vec<Task>, Error> {
         let bounds: Vec<Under> = self.all().into_iter().filter(|under| under.damper == damper).collect();
         let study = |under: &Under| Ok((self.under(*under, self.starts(*under))?, under.name()));
         let all = searches.ends_of_all(&bounds.iter().map(study).collect::<Result<Vec<_>, Error>>()?)?;
@@ -56,7 +55,11 @@ impl Fronts {
         for (under, Ends { best, value, places }) in bounds.into_iter().zip(all) {
             let found =
                 if value.is_nan() { "nothing that keeps it".to_owned() } else { format!("{value:.2} J") };
-            watch.log(&format!("{}, {}: {found}", self.name(damper), at_most(under.sweep, under.bound)))?;
+            searches.watch.log(&format!(
+                "{}, {}: {found}",
+                self.name(damper),
+                at_most(under.sweep, under.bound)
+            ))?;
             self.designs.extend(self.candidate(damper, best));
             if !self.is_steady(damper) {
                 tasks.extend([best].iter().chain(&places).flat_map(|at| self.descents(at, under)));

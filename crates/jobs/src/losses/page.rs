@@ -69,7 +69,6 @@ fn answer(losses: &Losses) -> Vec<String> {
     [lossless, anew, hedged, paper].into_iter().flatten().collect()
 }
 
-/// The values as a table.
 fn values(losses: &Losses) -> Block {
     let quantity = losses.study.quantity();
     let head = ["e"].into_iter().chain(Tuning::ALL.map(Tuning::name));
@@ -83,7 +82,6 @@ fn values(losses: &Losses) -> Block {
     Block::table(format!("Worst {}, {}", quantity.name(), quantity.unit()), head, rows.collect())
 }
 
-/// The re-tuned designs as a table.
 fn designs(losses: &Losses) -> Block {
     let head = ["e", "k2, N/m", "c2, N·s/m", "D, m", "C, m", "worst at, rad/s", "impacts at up to, m/s"];
     let rows = losses.of(Tuning::Anew).map(|Point { restitution, design, omega, impact_speed, .. }| {
@@ -94,7 +92,6 @@ fn designs(losses: &Losses) -> Block {
     Block::table("Re-tuned for each e", head, rows.collect())
 }
 
-/// The line of a damper.
 const fn line(tuning: Tuning) -> Stroke {
     match tuning {
         Tuning::Paper => Stroke::new(PURPLE, 1.1, Dash::DashDot),
@@ -111,7 +108,6 @@ fn points(losses: &Losses, tuning: Tuning, value: impl Fn(&Point) -> f64) -> Vec
     losses.of(tuning).map(|point| (point.restitution, value(point))).collect()
 }
 
-/// A chart over the restitution.
 fn chart(losses: &Losses, y: Axis, layers: Vec<Layer>, height: f64) -> Chart {
     let all = || losses.points.iter().map(|(_, point)| point.restitution);
     let [low, high] = [f64::min, f64::max].map(|of| all().reduce(of).unwrap_or(1.0));

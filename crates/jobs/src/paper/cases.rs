@@ -17,7 +17,6 @@ use retune_report::{Axis, Chart, Dash, Key, Layer, Sheet, Stroke, cells};
 use retune_solver::{Response, Sample, Window, simulate};
 use retune_study::joined;
 
-/// A case of the paper.
 struct Case {
     letter: &'static str,
     k1: f64,
@@ -59,7 +58,6 @@ impl Case {
     }
 }
 
-/// Makes Figure 7.
 pub fn figure7(plan: &Plan) -> Result<Item, Error> {
     let mut item = Item::new(plan.made_by("Shown from t0 to T + 100 s of a run from rest; judged over 2000 periods, of which the last 1000 count as settled."));
     let mut table = Table::headed(

@@ -20,10 +20,8 @@ const NONE: Stroke = Stroke::new(BLACK, 0.9, Dash::Long);
 const SSVI: Stroke = Stroke::new(VERMILION, 1.4, Dash::Dots);
 const TMD: Stroke = Stroke::solid(GREEN);
 const DAMPER: Stroke = Stroke::solid(ORANGE);
-/// The natural frequency.
 const NATURAL: Stroke = Stroke::new(BLACK, 0.7, Dash::Solid);
 
-/// Both charts with their legend.
 pub fn picture(family: &Family, motions: &Motions) -> Sheet {
     let omega = (motions.omega[0], motions.omega[motions.omega.len() - 1]);
     let k1 = stiffness(family.k1);
@@ -42,7 +40,6 @@ pub fn picture(family: &Family, motions: &Motions) -> Sheet {
     }
 }
 
-/// The colour of a kind of motion.
 fn colour(kind: Kind) -> Colour {
     match kind {
         Kind::Periodic => GREY,
@@ -74,7 +71,6 @@ fn legend() -> Vec<(Key, String)> {
     others.into_iter().chain(kinds).map(|(key, words)| (key, words.to_owned())).collect()
 }
 
-/// All values.
 const EVERYWHERE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 
 fn zone_chart(family: &Family, omega: (f64, f64)) -> Chart {

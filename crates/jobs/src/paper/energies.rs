@@ -60,7 +60,6 @@ pub fn figure6(plan: &Plan) -> Result<Item, Error> {
     Ok(item)
 }
 
-/// The figure and its data.
 fn over_time(plan: &Plan, scenes: &[Scene; 3], item: &mut Item) -> Result<(), Error> {
     let window = plan.whole_run();
     let record = |scene| recorded(plan, scene, window, INTERVAL);

@@ -32,12 +32,10 @@ impl Spread {
         Self { least: at(0.0), median: at(0.5), largest: at(1.0) }
     }
 
-    /// Whether a value lies within.
     pub fn holds(&self, value: f64) -> bool {
         (self.least..=self.largest).contains(&value)
     }
 
-    /// Its three numbers in words.
     pub fn words(&self) -> String {
         format!("{:.0} – {:.0} (median {:.0})", self.least, self.largest, self.median)
     }
@@ -94,7 +92,6 @@ pub fn best_tmd(plan: &Plan) -> Result<Scene, Error> {
     Ok(Scene { damper: Some(crate::retention::best_tmd(&scene, damper(&plan.tmd)?, BAND)?.0), ..scene })
 }
 
-/// Its spring and its damping in words.
 pub fn tmd_words(scene: &Scene) -> String {
     scene.damper.map_or(String::new(), |damper| {
         format!("k2 = {:.0} N/m, c2 = {:.0} N·s/m", damper.stiffness.get(), damper.damping.get())
@@ -123,7 +120,6 @@ pub struct Ladder {
     pub near: Spread,
 }
 
-/// One number of a ladder.
 pub type Pick = fn(&Ladder) -> f64;
 /// Those that a verdict must hold on: the finest, and both ends of the spread.
 const PICKS: [Pick; 3] = [Ladder::finest, |ladder| ladder.near.least, |ladder| ladder.near.largest];
@@ -136,7 +132,6 @@ impl Ladder {
         Self { values, near }
     }
 
-    /// On the finest frequencies.
     pub fn finest(&self) -> f64 {
         self.values.last().copied().unwrap_or(f64::NAN)
     }
@@ -163,7 +158,6 @@ fn middle(plan: &Plan) -> usize {
     rungs.get(rungs.len() / 2).copied().unwrap_or(2)
 }
 
-/// The finest number of frequencies.
 pub fn finest(plan: &Plan) -> usize {
     plan.file.ladder.last().copied().unwrap_or(2)
 }

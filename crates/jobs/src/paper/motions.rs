@@ -41,7 +41,6 @@ pub struct Motions {
 
 /// Motions that exist at the same frequency.
 pub struct Coexisting {
-    /// Index of the frequency.
     pub index: usize,
     /// Each motion once, with the first of [`STARTS`] that leads to it.
     pub motions: Vec<(usize, Regime)>,

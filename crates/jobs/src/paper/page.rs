@@ -10,9 +10,7 @@ use retune_study::counted;
 
 /// A table or figure of the paper, or another item of the page.
 pub struct Entry {
-    /// Its name, with which the names of its files begin.
     pub name: &'static str,
-    /// Its title.
     pub title: &'static str,
     /// What the paper shows.
     pub paper: &'static str,
@@ -83,7 +81,6 @@ pub static ENTRIES: [Entry; 9] = [
     },
 ];
 
-/// The whole page.
 pub fn page(items: &[(&'static Entry, Item)]) -> String {
     let of_paper = || items.iter().flat_map(|(_, item)| &item.statements).filter(|one| !one.conjecture);
     let [holds, partly, fails, undecided] =

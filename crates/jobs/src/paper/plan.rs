@@ -92,7 +92,6 @@ impl Range {
 }
 
 impl<'a> Plan<'a> {
-    /// Reads the plan at `path`.
     pub fn read(path: &Path, watch: &'a dyn Observer) -> Result<Self, Error> {
         let file: PaperPlan = read_paper(path)?;
         let refuse = |problem: &str| {

@@ -97,7 +97,6 @@ fn of_each(all: &[(Family, Motions)], words: impl Fn(&Family, &Motions) -> Vec<S
     joined(&all.iter().map(one).collect::<Vec<_>>(), "; ")
 }
 
-/// The number of frequencies at each stiffness.
 fn frequencies(all: &[(Family, Motions)]) -> usize {
     all.first().map_or(0, |(_, motions)| motions.omega.len())
 }

@@ -24,7 +24,6 @@ const SAMPLES: usize = 31;
 /// Share of the nodes among which a point passes for an optimum that was read from a surface.
 const AMONG: f64 = 0.05;
 
-/// A surface of Figure 2.
 struct Surface {
     name: &'static str,
     variables: [Parameter; 2],
@@ -74,7 +73,6 @@ struct Outcome {
     better: usize,
 }
 
-/// Makes Figure 2.
 pub fn figure2(plan: &Plan) -> Result<Item, Error> {
     let [fine, coarse] = if plan.is_brief { BRIEF } else { POINTS };
     let mut item = Item::new(plan.made_by(&format!(

@@ -34,7 +34,6 @@ const BESIDE: [f64; 5] = [-0.02, -0.01, 0.0, 0.01, 0.02];
 const BEFORE: [f64; 3] = [0.0, 0.25, 0.5];
 /// Designs of each median.
 const FEW: u32 = 51;
-/// Protocols that the table shows.
 const SHOWN: usize = 6;
 
 /// Designs within ±0.1 % of each row.
@@ -117,11 +116,8 @@ fn worth(plan: &Plan, item: &mut Item) -> Result<(), Error> {
 /// What the paper leaves out.
 #[derive(Clone, Copy, PartialEq)]
 struct Protocol {
-    /// The radius of the damper's surfaces, m.
     radius: f64,
-    /// The frequency, rad/s.
     omega: f64,
-    /// The window of the maxima.
     window: Window,
 }
 
@@ -136,7 +132,6 @@ struct Outcome {
 }
 
 impl Protocol {
-    /// The study's own.
     fn own(plan: &Plan) -> Self {
         let omega = plan.ssvi.scene.forcing.frequency.get();
         Self { radius: plan.radius(), omega, window: plan.window() }

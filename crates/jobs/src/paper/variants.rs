@@ -38,7 +38,6 @@ struct Verdicts {
     all: Vec<Verdict>,
 }
 
-/// Makes the table.
 pub fn figures(plan: &Plan) -> Result<Item, Error> {
     let mut item = Item::new(plan.made_by(&format!(
         "All figures again, with only what is named changed, on fewer points: worst cases on {LADDER} frequencies at most, maps with a quarter of the nodes, motions at {MOTIONS} frequencies."

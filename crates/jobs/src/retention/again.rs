@@ -8,7 +8,6 @@ use crate::again::{Numbers, Row, Source, each_row};
 use crate::resolved::Resolved;
 use std::path::Path;
 
-/// A row of one of the tables.
 pub(super) fn again(place: &Path, name: &str) -> Result<Source, Error> {
     let resolved = Resolved::read(place)?;
     let k1 = resolved.plan["k1"].as_array().map(|all| all.iter().filter_map(|k1| k1.as_f64()).collect());

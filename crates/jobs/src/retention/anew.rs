@@ -1,12 +1,12 @@
 //! The searches of `retention`: a damper tuned for the k1 of its study, for others, and for the worst over all of them.
 
 use super::tuned::{Tuned, Tuning, energy, label, over};
+use crate::Error;
 use crate::designs::Row;
 use crate::fronts::SAME;
 use crate::pages::over as over_band;
 use crate::searches::Searches;
 use crate::tune::{Found, Optimum};
-use crate::{Error, Observer};
 use retune_model::{Design, Parameter};
 use retune_study::{PaperStudy, Setting, SpringBounds, Study, Table2, short};
 
@@ -17,7 +17,6 @@ pub(super) fn tune(
     said: &Table2,
     others: &[f64],
     searches: &mut Searches,
-    watch: &dyn Observer,
 ) -> Result<(Tuned, Vec<Row>), Error> {
     let nominal = study.scene.primary.stiffness.get();
     let mut found: Vec<(f64, Design, Row)> = Vec::new();
@@ -25,11 +24,11 @@ pub(super) fn tune(
         let study = anew(study, k1, neighbour, said.k2_bounds)?;
         let warm = if neighbour.is_some() { ", and from the design of the k1 beside it" } else { "" };
         let natural = short(study.scene.primary.natural_frequency());
-        watch.log(&format!(
+        searches.watch.log(&format!(
             "\n{name} at k1 = {k1} N/m (natural frequency {natural} rad/s), {}{warm}",
             over_band(&study)
         ))?;
-        let optimum = searched(study.clone(), said.samples, &format!("k1-{k1}"), searches, watch)?;
+        let optimum = searched(study.clone(), said.samples, &format!("k1-{k1}"), searches)?;
         let design = optimum.found().damper.design_of(study.varied());
         found.push((k1, design, Row::of_optimum(&label(k1), name, &study, &optimum)));
         Ok(design)
@@ -52,8 +51,8 @@ pub(super) fn tune(
     tuned.kept.push((Tuning::Nominal, first));
     if designs.len() > 1 {
         let (study, name) = (robust(study, &designs)?, Tuning::Robust.name());
-        watch.log(&format!("\n{} for all k1, {}", tuned.name, over_band(&study)))?;
-        let optimum = searched(study.clone(), said.samples, name, searches, watch)?;
+        searches.watch.log(&format!("\n{} for all k1, {}", tuned.name, over_band(&study)))?;
+        let optimum = searched(study.clone(), said.samples, name, searches)?;
         rows.push(Row::of_optimum(name, &tuned.name, &study, &optimum));
         tuned.kept.push((Tuning::Robust, optimum.found().damper.design_of(study.varied())));
     }
@@ -67,10 +66,9 @@ fn searched(
     samples: Option<usize>,
     place: &str,
     searches: &mut Searches,
-    watch: &dyn Observer,
 ) -> Result<Optimum, Error> {
     let optimum = searches.tune(&study, place)?;
-    watch.log(&optimum.report())?;
+    searches.watch.log(&optimum.report())?;
     let Found { damper, e1_max } = optimum.found();
     let own = study.scene.primary.stiffness.get();
     let rises = |again: f64| again > (1.0 + SAME) * e1_max;
@@ -85,9 +83,11 @@ fn searched(
             band.samples = samples.unwrap_or(band.samples);
         }
     }
-    watch.log(&format!("refined on {} frequencies, on which it rises", samples.unwrap_or_default()))?;
+    searches
+        .watch
+        .log(&format!("refined on {} frequencies, on which it rises", samples.unwrap_or_default()))?;
     let optimum = searches.tune(&study, &format!("{place}-finer"))?;
-    watch.log(&optimum.report())?;
+    searches.watch.log(&optimum.report())?;
     Ok(optimum)
 }
 

@@ -76,7 +76,6 @@ pub fn under(study: &Study, samples: Option<usize>, at: &Design, gaps: &str, for
     Some([energy(&study, samples, &at, own)?, bare(&study, own)?])
 }
 
-/// A row for each force.
 pub fn table(dampers: &[Tuned], all: &[Forced]) -> Table {
     let mut table = columns::table(&["damper", "gaps", "P", "E1max"]);
     table.columns.push(Column::new("none", Measure::Energy.unit()));

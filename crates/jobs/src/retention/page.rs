@@ -16,7 +16,6 @@ use retune_report::document::{Block, Document};
 use retune_store::Directory;
 use retune_study::{SpringBounds, design_words, rounded, short};
 
-/// Writes the page in both forms, and its figures.
 pub(super) fn write(retained: &Retained, directory: &Directory) -> Result<(), Error> {
     let words = "E1max, worst over each structure's own band, against its stiffness";
     let mut energy = vec![
@@ -63,7 +62,6 @@ const RULE: &str = "A damper does its work at a stiffness k1 if its reduction, 1
 /// What is to be added where the dampers do not all have one mass.
 const MASS: &str = " Where m2 is varied, this TMD has the mass of the damper in the study.";
 
-/// What was compared.
 fn compared(Retained { dampers, bounds, .. }: &Retained) -> String {
     let Some(first) = dampers.first() else { return String::new() };
     let samples = first.samples.map(|samples| format!(" on {samples} frequencies")).unwrap_or_default();
@@ -129,7 +127,6 @@ fn home(retained: &Retained, shown: &[usize]) -> Option<String> {
     ))
 }
 
-/// The range of a design in words.
 fn keeps(retained: &Retained, point: &Point) -> String {
     let still = point.ranges[STILL].map_or(String::new(), |range| {
         let factor = rounded(range.factor(), 3);
@@ -215,7 +212,6 @@ fn one(retained: &Retained, number: usize) -> String {
     words + "."
 }
 
-/// An energy in words.
 fn joule(value: f64) -> String {
     if value.is_finite() { rounded(value, 4) } else { "-".to_owned() }
 }
@@ -241,7 +237,6 @@ fn worst(retained: &Retained) -> Block {
     Block::table(caption, ["damper", "tuning"].into_iter().map(str::to_owned).chain(k1), rows)
 }
 
-/// The cliffs of the curves.
 fn jumps(retained: &Retained) -> Block {
     let (mut lines, shown) = (Vec::new(), retained.shown());
     for Curve { damper, tuning, band, points } in &retained.curves {
@@ -304,7 +299,6 @@ fn forces(retained: &Retained) -> Block {
     Block::table(caption, head, rows)
 }
 
-/// The trade of one damper in words.
 fn traded(retained: &Retained, damper: usize) -> String {
     let (name, front) = (retained.name(damper), retained.front(damper));
     let (Some(least), Some(widest)) = (front.first(), front.last()) else {
@@ -324,7 +318,6 @@ fn traded(retained: &Retained, damper: usize) -> String {
     format!("{name}: from {}, to {}.", said(least), said(widest))
 }
 
-/// All designs.
 fn designs(retained: &Retained) -> Block {
     let shown = retained.shown();
     let is_shown = |row: &Row| {

@@ -31,7 +31,6 @@ pub struct Retained {
 }
 
 impl Retained {
-    /// The name of a damper.
     pub(super) fn name(&self, damper: usize) -> &str {
         &self.dampers[damper].name
     }
@@ -41,7 +40,6 @@ impl Retained {
         self.dampers.first().map(Tuned::study)
     }
 
-    /// Whether the mass of a damper is varied.
     pub(super) fn varies_mass(&self) -> bool {
         self.dampers.iter().any(|damper| damper.study().varied().contains(&Parameter::M2))
     }
@@ -78,7 +76,6 @@ impl Retained {
         tuning != Tuning::Paper || self.dampers[..damper].iter().all(|earlier| earlier.of(tuning) != at)
     }
 
-    /// The kept designs that are shown.
     pub(super) fn shown_kept(&self) -> Vec<&Point> {
         let shown = self.shown();
         let is_shown =

@@ -6,10 +6,10 @@
 
 use super::range::{Care, Range, Threshold};
 use super::tuned::{OWN, STILL, Tuned, Tuning, on_samples};
+use crate::Error;
 use crate::columns;
 use crate::searches::Searches;
 use crate::tune::objective::{kept, loose};
-use crate::{Error, Observer};
 use retune_model::{Design, Parameter};
 use retune_optim::{DesignObjective, Global, explore, minimize};
 use retune_report::cells;
@@ -117,12 +117,7 @@ fn range(study: &Study, samples: Option<usize>, at: &Design, threshold: &Thresho
 }
 
 /// The designs between the nominal one and that with the widest range, of one damper.
-pub fn trade(
-    number: usize,
-    tuned: &Tuned,
-    searches: &Searches,
-    watch: &dyn Observer,
-) -> Result<Vec<Point>, Error> {
+pub fn trade(number: usize, tuned: &Tuned, searches: &Searches) -> Result<Vec<Point>, Error> {
     let (study, threshold) = (tuned.study(), &tuned.thresholds[OWN]);
     let search = study.search().map_err(Error::rule(study))?;
     let [of, of_ranges] = [RTOL, OF_RANGES].map(|rtol| loose(study, &search, &search.variables, rtol));
@@ -170,7 +165,7 @@ pub fn trade(
     }
     let designs = evaluated.front(&search.variables)?;
     let (name, count) = (&tuned.name, designs.len());
-    watch.log(&format!("{name}: {count} designs between the least E1max and the widest range"))?;
+    searches.watch.log(&format!("{name}: {count} designs between the least E1max and the widest range"))?;
     Ok(designs.into_iter().map(|at| Point::new((number, tuned), Tuning::Front, at)).collect())
 }
 
@@ -252,7 +247,6 @@ impl Evaluated<'_> {
     }
 }
 
-/// A row for each design.
 pub fn table<'a>(dampers: &[Tuned], points: impl Iterator<Item = &'a Point> + Clone) -> Table {
     let parameters = columns::of_designs(points.clone().map(|point| &point.at));
     let names = [&["damper", "tuning"], &*columns::symbols(&parameters), &["E1max"]].concat();

@@ -7,13 +7,9 @@ use retune_model::{Design, NonNegative, Positive, Scene};
 use retune_optim::Stiffnesses;
 use retune_study::Study;
 
-/// The table of the designs.
 pub(super) const DESIGNS: &str = "retune.csv";
-/// The table of the curves.
 pub(super) const CURVES: &str = "retention.csv";
-/// The table of ranges.
 pub(super) const RANGES: &str = "range.csv";
-/// The table of smaller forces.
 pub(super) const FORCES: &str = "force.csv";
 
 /// How a damper came to its design.
