@@ -47,11 +47,8 @@ const EVENTS: &str = "At a fold a branch turns back: stable and unstable motions
 fn plan_words(motions: &Motions) -> String {
     let plan = &motions.branches.plan;
     let (symbol, unit, [from, to]) = (plan.parameter.symbol(), plan.parameter.unit(), plan.range);
-    let damper = motions
-        .study
-        .scene
-        .damper
-        .map_or(String::new(), |damper| TunedDamper::of(&damper, motions.study.varied()).words(|_| 5));
+    let words = |damper| TunedDamper::of(&damper, motions.study.varied()).words(|_| 5);
+    let damper = motions.study.scene.damper.map_or(String::new(), words);
     let more = [
         (plan.fine, "value", " A run from rest at each of # leads to the branches that this has missed."),
         (plan.apart, "run", " From # at each of the former, Newton's iteration looks for other motions."),
@@ -86,25 +83,17 @@ pub fn answer(motions: &Motions) -> Vec<String> {
         let (energy, place) = (joule(energy(orbit)), motions.at(orbit.value, 6));
         format!("{energy} J at {place}, on branch {number} ({})", kind(orbit))
     };
-    if let Some(first) = most.first() {
-        words.push(format!("The largest E1max of all stable motions: {}.", reached(first)));
-        if !all.is_reached_from_rest(first.0) {
-            let usual = most.iter().find(|(other, _)| all.is_reached_from_rest(*other));
-            words.extend(usual.map(|usual| {
-                format!(
-                    "No run from rest that was made ends on it. The largest on branches that runs from rest end on: {}.",
-                    reached(usual)
-                )
-            }));
-            let remedy = |parameter| remedy(&all.branches[first.0], first.1, parameter);
-            let ways: Vec<String> = TRIED.into_iter().filter_map(remedy).collect();
-            if !ways.is_empty() {
-                words.push(format!(
-                    "What removes that motion, at {} and all else as it is: {}.",
-                    motions.at(first.1.value, 6),
-                    ways.join("; ")
-                ));
-            }
+    words.extend(
+        most.first().map(|first| format!("The largest E1max of all stable motions: {}.", reached(first))),
+    );
+    if let Some((number, first)) = most.first().filter(|(number, _)| !all.is_reached_from_rest(*number)) {
+        let usual = most.iter().find(|(other, _)| all.is_reached_from_rest(*other)).map(reached);
+        words.extend(usual.map(|usual| format!("No run from rest that was made ends on it. The largest on branches that runs from rest end on: {usual}.")));
+        let remedy = |parameter| remedy(&all.branches[*number], first, parameter);
+        let ways: Vec<String> = TRIED.into_iter().filter_map(remedy).collect();
+        if !ways.is_empty() {
+            let (place, ways) = (motions.at(first.value, 6), ways.join("; "));
+            words.push(format!("What removes that motion, at {place} and all else as it is: {ways}."));
         }
     }
     words.extend(all.branches.iter().enumerate().filter_map(|(i, branch)| isola(motions, i, branch)));
@@ -123,11 +112,9 @@ pub fn answer(motions: &Motions) -> Vec<String> {
         let within = |sample: &&Sample| sample.value >= *from && sample.value <= *to;
         let most = all.samples.iter().filter(within).map(most_irregular).fold(0.0, f64::max);
         let seen = if most > 0.0 { format!("; runs there reach {} J", joule(most)) } else { String::new() };
-        words.push(format!(
-            "From {symbol} = {} to {} {unit} no stable periodic motion is known{seen}.",
-            rounded(*from, 6),
-            rounded(*to, 6)
-        ));
+        let [from, to] = [from, to].map(|end| rounded(*end, 6));
+        words
+            .push(format!("From {symbol} = {from} to {to} {unit} no stable periodic motion is known{seen}."));
     }
     words
 }

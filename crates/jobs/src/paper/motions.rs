@@ -153,15 +153,11 @@ pub fn begins(plan: &Plan, all: &[(Family, Motions)]) -> Result<Table, Error> {
     );
     for ((family, _), found) in all.iter().zip(found) {
         let [from, to] = found.plan.range;
-        let mut parts: Vec<Part> = Vec::new();
-        for (number, branch) in found.branches.iter().enumerate() {
-            for part in stable_parts(branch) {
-                let within = |value: f64| part.ends[0].0 <= value && value <= part.ends[1].0;
-                let rest = found.on(number).any(|(sample, one)| one.from_rest && within(sample.value));
-                parts.push(Part { rest, ..part });
-            }
-        }
-        for Part { label, ends: [begin, end], rest } in merged(parts) {
+        let parts = found.branches.iter().enumerate().flat_map(|(number, branch)| {
+            let rest = found.on(number).filter(|(_, one)| one.from_rest).map(|(sample, _)| sample.value);
+            stable_parts(branch, &rest.collect::<Vec<f64>>())
+        });
+        for Part { label, ends: [begin, end], rest } in merged(parts.collect()) {
             if end.0 - begin.0 >= NARROW * (to - from) {
                 table.push(cells![
                     stiffness(family.k1),
@@ -198,8 +194,8 @@ fn merged(mut parts: Vec<Part>) -> Vec<Part> {
     found
 }
 
-/// The parts of a branch with stable motions of one name.
-fn stable_parts(branch: &Branch) -> Vec<Part> {
+/// The parts of a branch with stable motions of one name; runs `from_rest` end on it at these frequencies.
+fn stable_parts(branch: &Branch, from_rest: &[f64]) -> Vec<Part> {
     let event = |place: usize| branch.events.iter().find(|event| event.place == place);
     let last = branch.points.len() - 1;
     let why = |place: usize| match event(place) {
@@ -225,7 +221,8 @@ fn stable_parts(branch: &Branch) -> Vec<Part> {
             let label = periodic_label(orbit.periods, ['S', 'O'].map(struck));
             let mut ends = [at(begin), at(place)];
             ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-            found.push(Part { label, ends, rest: false });
+            let rest = from_rest.iter().any(|value| (ends[0].0..=ends[1].0).contains(value));
+            found.push(Part { label, ends, rest });
             first = None;
         }
         if goes_on && first.is_none() {

@@ -22,7 +22,8 @@ const LADDER: usize = 301;
 const MOTIONS: usize = 41;
 const POINTS: usize = 36;
 
-const FIGURES: [(&str, fn(&Plan) -> Result<Item, Error>); 6] = [
+type Figure = fn(&Plan) -> Result<Item, Error>;
+const FIGURES: [(&str, Figure); 6] = [
     ("Figure 2", surfaces::figure2),
     ("Figure 3", curves::figure3),
     ("Figure 4", regimes::figure4),

@@ -148,7 +148,7 @@ pub(super) fn range(retained: &Retained) -> Drawing {
     };
     let dominated: Vec<(f64, f64)> =
         points.iter().filter(|point| !is_front(point)).map(|point| at(point)).collect();
-    let any_dominated = !dominated.is_empty();
+    let last = (!dominated.is_empty()).then(|| (Key::Mark(DOMINATED), "found, but dominated".to_owned()));
     let mut layers = vec![Layer::Marks { points: dominated, mark: DOMINATED }];
     let mut legend = Vec::new();
     for (damper, front) in fronts.iter().filter(|(_, front)| !front.is_empty()) {
@@ -163,17 +163,12 @@ pub(super) fn range(retained: &Retained) -> Drawing {
     for (tuning, shape) in Tuning::KEPT.into_iter().zip(shapes) {
         let mark = |colour| Mark { rim: true, ..Mark::new(shape, colour, 7.0) };
         let own = || kept.iter().filter(|point| point.tuning == tuning && point.range().is_some());
-        if own().next().is_some() {
-            legend.push((Key::Mark(mark(BLACK)), tuning.name().to_owned()));
-        }
-        layers.extend(own().map(|point| {
-            let (colour, _) = DAMPERS[point.damper % DAMPERS.len()];
-            Layer::Marks { points: vec![at(point)], mark: mark(colour) }
-        }));
+        legend.extend(own().next().map(|_| (Key::Mark(mark(BLACK)), tuning.name().to_owned())));
+        let colour = |point: &Point| style(point.damper).1.colour;
+        let marks = |point: &&Point| Layer::Marks { points: vec![at(point)], mark: mark(colour(point)) };
+        layers.extend(own().map(marks));
     }
-    if any_dominated {
-        legend.push((Key::Mark(DOMINATED), "found, but dominated".to_owned()));
-    }
+    legend.extend(last);
     let all = || points.iter().chain(&kept).filter(|point| point.range().is_some());
     let right = all().map(|point| point.factor()).fold(0.0, f64::max);
     let right = if right > 1.0 { 1.0 + 1.05 * (right - 1.0) } else { 2.0 };

@@ -10,8 +10,8 @@ use crate::Error;
 use crate::columns;
 use crate::searches::Searches;
 use crate::tune::objective::{kept, loose};
-use retune_model::{Design, Parameter};
-use retune_optim::{DesignObjective, Global, explore, minimize};
+use retune_model::{Design, Parameter, Scene};
+use retune_optim::{DesignObjective, Evaluation, Global, explore, minimize};
 use retune_report::cells;
 use retune_report::table::{Cell, Column, Table};
 use retune_study::{Setting, Study};
@@ -64,8 +64,12 @@ impl Point {
     /// A design of a damper, on the common samples.
     pub fn new((damper, tuned): (usize, &Tuned), tuning: Tuning, at: Design) -> Self {
         let e1_max = tuned.energy(&at, tuned.nominal());
-        let range =
-            |band: usize| range(tuned.studies.get(band)?, tuned.samples, &at, tuned.thresholds.get(band)?);
+        let range = |band: usize| {
+            let study = on_samples(tuned.studies.get(band)?, tuned.samples, &at)?;
+            let (goal, settings) = (study.goal(), study.solver.settings());
+            let evaluate = |scene: &Scene, cutoff| goal.evaluate(scene, &settings, cutoff);
+            range(&study, tuned.thresholds.get(band)?, Care::RESULT, evaluate)
+        };
         Self { damper, tuning, at, e1_max, ranges: [OWN, STILL].map(range) }
     }
 
@@ -105,13 +109,16 @@ pub fn front(points: &[Point], damper: usize) -> Vec<&Point> {
     front
 }
 
-/// The range of a design by the objective of a study, on so many samples of its band.
-fn range(study: &Study, samples: Option<usize>, at: &Design, threshold: &Threshold) -> Option<Range> {
-    let study = on_samples(study, samples, at)?;
-    let (goal, settings) = (study.goal(), study.solver.settings());
-    threshold.range(Care::RESULT, |k1, cutoff| {
-        let scene = study.scene_with(&[Setting::new(Parameter::K1, k1)]);
-        let found = scene.ok().and_then(|scene| goal.evaluate(&scene, &settings, cutoff).ok());
+/// The range of the damper in the scene of a study, by what it has in the scene at another k1.
+fn range<E>(
+    study: &Study,
+    threshold: &Threshold,
+    care: Care,
+    evaluate: impl Fn(&Scene, f64) -> Result<Evaluation, E> + Sync,
+) -> Option<Range> {
+    threshold.range(care, |k1, cutoff| {
+        let scene = study.scene_with(&[Setting::new(Parameter::K1, k1)]).ok();
+        let found = scene.and_then(|scene| evaluate(&scene, cutoff).ok());
         found.map_or(f64::INFINITY, |found| found.value)
     })
 }
@@ -145,11 +152,13 @@ pub fn trade(number: usize, tuned: &Tuned, searches: &Searches) -> Result<Vec<Po
         found.map_err(|source| Error::Global { source, failures: of.failures() })?;
     }
     let options = || retune_optim::Options { max_fun_evals: Some(EVALUATIONS), ..search.options.clone() };
-    let refuse = |source| Error::Search { source, failures: of.failures() };
-    if let Some((from, _)) = evaluated.best(score) {
-        minimize(|x, _| widest(x), &from, options(), |_| ControlFlow::Continue(())).map_err(refuse)?;
-    }
-    searches.journal().check()?;
+    let refine = |value: &dyn Fn(&[f64], f64) -> f64, from: Option<(Vec<f64>, _)>| -> Result<(), Error> {
+        let Some((from, _)) = from else { return Ok(()) };
+        let found = minimize(value, &from, options(), |_| ControlFlow::Continue(()));
+        found.map_err(|source| Error::Search { source, failures: of.failures() })?;
+        Ok(searches.journal().check()?)
+    };
+    refine(&|x, _| widest(x), evaluated.best(score))?;
     let most = evaluated.best(|(_, width)| -width).map_or(0.0, |(_, (_, width))| width);
     let targets = if most > 0.0 { BETWEEN } else { 0 };
     for i in 1..=targets {
@@ -159,9 +168,7 @@ pub fn trade(number: usize, tuned: &Tuned, searches: &Searches) -> Result<Vec<Po
             (_, width) => TOO_NARROW * (1.0 + wanted - width),
         };
         let keeps = |(e1_max, width): (f64, f64)| if width >= wanted { e1_max } else { f64::INFINITY };
-        let Some((from, _)) = evaluated.best(keeps) else { continue };
-        minimize(value, &from, options(), |_| ControlFlow::Continue(())).map_err(refuse)?;
-        searches.journal().check()?;
+        refine(&value, evaluated.best(keeps))?;
     }
     let designs = evaluated.front(&search.variables)?;
     let (name, count) = (&tuned.name, designs.len());
@@ -199,12 +206,9 @@ impl Evaluated<'_> {
     fn width(&self, x: &[f64]) -> f64 {
         let Ok(scene) = self.of.scene(x) else { return 0.0 };
         let study = Study { scene, ..self.study.clone() };
-        let energy = |k1: f64, cutoff: f64| {
-            let scene = study.scene_with(&[Setting::new(Parameter::K1, k1)]).ok();
-            let found = scene.and_then(|scene| self.of_ranges.evaluate(&scene, cutoff).ok());
-            found.map_or(f64::INFINITY, |found| found.value)
-        };
-        self.threshold.range(Care::SEARCH, energy).map_or(0.0, |range| range.factor() - 1.0)
+        let evaluate = |scene: &Scene, cutoff| self.of_ranges.evaluate(scene, cutoff);
+        let range = range(&study, self.threshold, Care::SEARCH, evaluate);
+        range.map_or(0.0, |range| range.factor() - 1.0)
     }
 
     /// All designs with both numbers; the order does not depend on which thread was first.
@@ -231,19 +235,15 @@ impl Evaluated<'_> {
             widest = widest.max(*width);
             more
         });
-        let step = widest / MOST as f64;
-        let mut next = 0.0;
-        let last = all.len().saturating_sub(1);
-        let mut number = 0;
-        all.retain(|(_, (_, width))| {
-            let kept = *width >= next || number == last;
-            if kept {
+        let (step, last, mut next) = (widest / MOST as f64, all.len().saturating_sub(1), 0.0);
+        let mut front = Vec::new();
+        for (number, (x, (_, width))) in all.into_iter().enumerate() {
+            if width >= next || number == last {
                 next = width + step;
+                front.push(Design::of_varied(&self.of.damper(&x)?, varied));
             }
-            number += 1;
-            kept
-        });
-        all.iter().map(|(x, _)| Ok(Design::of_varied(&self.of.damper(x)?, varied))).collect()
+        }
+        Ok(front)
     }
 }
 
