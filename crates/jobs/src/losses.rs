@@ -10,10 +10,10 @@ use crate::artefact::{Content, Kind, artefact};
 use crate::job::{Done, Job, Made};
 use crate::paper::TABLE_2;
 use crate::resolved;
+use crate::rows::of_each;
 use crate::searches::Searches;
-use crate::{Error, Observer, Request};
+use crate::{Error, Observer, Request, Silent};
 use points::{FILE, at};
-use rayon::prelude::*;
 use retune_model::{Design, Parameter};
 use retune_optim::Unusable;
 use retune_study::{Rule, Study, clipped, read};
@@ -62,9 +62,9 @@ pub fn losses(request: &Request, watch: &dyn Observer) -> Result<Done<Losses>, E
         {
             designs.extend(restitutions.iter().map(|e| (tuning, *e, design)));
         }
-        let point =
-            |(tuning, e, design): &(Tuning, f64, Design)| Ok((*tuning, Point::new(&study, *e, *design)?));
-        let points = designs.par_iter().map(point).collect::<Result<Vec<_>, Error>>()?;
+        let points = of_each(&designs, &Silent, |(tuning, e, design)| {
+            Ok((*tuning, Point::new(&study, *e, *design)?))
+        })?;
         let losses = Losses { points, study: study.clone() };
         directory.write(FILE, &losses.table().csv())?;
         let report = page::write(&losses, directory)?;

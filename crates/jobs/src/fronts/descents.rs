@@ -10,10 +10,10 @@ use super::candidate::{Candidate, Under};
 use super::designs::Fronts;
 use super::places::{about, on_sides, scattered, starts};
 use crate::Error;
+use crate::rows::of_each;
 use crate::searches::Searches;
 use crate::tune::descent::descend;
 use crate::tune::objective::searched;
-use rayon::prelude::*;
 use retune_model::{Design, Parameter, PerVariable};
 use retune_store::Journal;
 use retune_study::{Study, Sweep, counted};
@@ -111,15 +111,13 @@ impl Fronts {
     /// The ends of descents that keep a value.
     fn ends(&self, tasks: &[Task], searches: &Searches) -> Result<Vec<Candidate>, Error> {
         let bar = searches.watch.progress("descents", tasks.len() as u64);
-        let end = |task: &Task| -> Result<Option<Candidate>, Error> {
+        let ends = of_each(tasks, &*bar, |task| {
             let end = task.end(self.under(task.under, Vec::new())?, searches.journal())?;
-            bar.inc(1);
             Ok(end.and_then(|at| self.candidate(task.under.damper, at)))
-        };
-        let ends: Vec<Result<Option<Candidate>, Error>> = tasks.par_iter().map(end).collect();
+        });
         bar.finish();
         searches.journal().check()?;
-        ends.into_iter().filter_map(Result::transpose).collect()
+        Ok(ends?.into_iter().flatten().collect())
     }
 
     /// The descents from a design under a bound.

@@ -5,13 +5,14 @@
 
 use super::candidate::{Candidate, SAME, Under};
 use crate::Error;
+use crate::Silent;
 use crate::again::{Made, json};
 use crate::certify::{Certificate, certify};
 use crate::columns;
 use crate::needs::Largest;
 use crate::resampled::finer;
 use crate::resolved::Resolved;
-use rayon::prelude::*;
+use crate::rows::of_each;
 use retune_model::{Design, Measure, Parameter};
 use retune_report::cells;
 use retune_report::table::{Cell, Table};
@@ -123,13 +124,12 @@ impl Fronts {
         gains.truncate(self.plan.said.certificates);
         let certified = |(_, under, design): &(f64, Under, &Candidate)| {
             let (_, study) = &self.plan.dampers[design.damper];
-            let study = certifiable(study, self.plan.said.samples, &design.at)?;
+            let study = certifiable(study, self.plan.said.samples, &design.at);
+            let Some(certificate) = study.map(|study| certify(&study)).transpose()? else { return Ok(None) };
             let file = format!("certificate-{}-{}.json", under.sweep.name(), under.bound);
-            let (under, design) = (*under, Candidate::clone(design));
-            Some(certify(&study).map(|certificate| Certified { under, design, file, certificate }))
+            Ok(Some(Certified { under: *under, design: Candidate::clone(design), file, certificate }))
         };
-        let certified: Vec<Option<Result<Certified, Error>>> = gains.par_iter().map(certified).collect();
-        certified.into_iter().flatten().collect()
+        Ok(of_each(&gains, &Silent, certified)?.into_iter().flatten().collect())
     }
 
     /// The least E1max of the first damper under a bound, J.

@@ -5,13 +5,13 @@
 use super::candidate::{CONTINUED, Candidate, Under, at_most, by_excess};
 use super::descents::Task;
 use super::designs::{Fronts, GIVEN};
-use crate::Error;
 use crate::certify::judge;
 use crate::needs::Largest;
 use crate::resampled::{finer, worst};
+use crate::rows::of_each;
 use crate::searches::Searches;
 use crate::tune::ends::Ends;
-use rayon::prelude::*;
+use crate::{Error, Silent};
 use retune_model::{Design, Measure, PerVariable, Scene};
 use retune_optim::Limit;
 use retune_study::{FrontsPlan, Optimize, Study, Sweep, bounded, clipped};
@@ -125,10 +125,9 @@ impl Fronts {
             if open.is_empty() {
                 return Ok(());
             }
-            let judged = open.par_iter().map(|&(at, under)| Ok((at, self.judged(&self.designs[at], under)?)));
-            for (at, design) in judged.collect::<Result<Vec<_>, Error>>()? {
-                self.designs[at] = design;
-            }
+            let judged =
+                of_each(&open, &Silent, |&(at, under)| Ok((at, self.judged(&self.designs[at], under)?)))?;
+            judged.into_iter().for_each(|(at, design)| self.designs[at] = design);
         }
     }
 

@@ -1,9 +1,10 @@
 //! Figure 7: three irregular motions and their regimes.
 
 use super::item::Item;
-use super::measures::{ends, for_each, recorded, rounded};
+use super::measures::{ends, recorded, rounded};
 use super::plan::{Plan, stiffness};
 use crate::Error;
+use crate::rows::of_each;
 use retune_dynamics::regime::{
     ARRIVED, FALLING, FLOOR, LAMINAR, LAMINAR_PERIOD, LAMINAR_PHASE, LONGEST, MARGIN, MOSTLY, NEARING,
     PARTED, SAME,
@@ -74,12 +75,10 @@ pub fn figure7(plan: &Plan) -> Result<Item, Error> {
             variants.extend(NEAR.map(|shift| (own, case.omega + shift)));
             variants.extend(plan.other_radii().map(|radius| (radius, case.omega)));
         }
-        let judged = for_each(&variants, |&(radius, omega)| {
+        let judged = of_each(&variants, &*bar, |&(radius, omega)| {
             let values = [(Parameter::K1, case.k1), (Parameter::Omega, omega), (Parameter::R, radius)];
             let stretch = Stretch { settle: 1000, observe: 1000 };
-            let record = follow(&plan.ssvi_with(&values)?, None, stretch, &plan.settings())?;
-            bar.inc(1);
-            Ok(classify(&record))
+            Ok(classify(&follow(&plan.ssvi_with(&values)?, None, stretch, &plan.settings())?))
         })?;
         for (&(radius, omega), regime) in variants.iter().zip(&judged) {
             table.push(cells![

@@ -46,16 +46,6 @@ pub fn ends(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
     numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], one| [low.min(one), high.max(one)])
 }
 
-/// What a function gives for each of some things, side by side.
-pub fn for_each<T: Sync, U: Send>(
-    all: &[T],
-    of: impl Fn(&T) -> Result<U, Error> + Sync + Send,
-) -> Result<Vec<U>, Error> {
-    // The first error is that of the first thing, not of the first thread.
-    let made: Vec<Result<U, Error>> = all.par_iter().map(of).collect();
-    made.into_iter().collect()
-}
-
 /// The worst over the band of the page.
 pub fn over_band(samples: usize, response: Response) -> Objective {
     let [from, to] = BAND.map(Positive::new);

@@ -2,9 +2,9 @@
 //! the branch of its motions the ends of a periodic one are exact, with the bifurcation there.
 
 use super::family::Family;
-use super::measures::for_each;
 use super::plan::{Plan, stiffness};
-use crate::{Error, Progress};
+use crate::rows::of_each;
+use crate::{Error, Progress, Silent};
 use retune_dynamics::periodic::branches::{Control, Plan as BranchPlan};
 use retune_dynamics::periodic::{Branch, End, EventKind, branches};
 use retune_dynamics::poincare::Periods;
@@ -52,10 +52,8 @@ impl Motions {
         let omega: Vec<f64> = plan.file.motions.values().into_iter().map(|ratio| ratio * natural).collect();
         let down: Vec<f64> = omega.iter().rev().copied().collect();
         let settings = plan.settings();
-        let records = for_each(&omega, |&value| {
-            let record = follow(&Parameter::Omega.at(*scene, value)?, None, Stretch::default(), &settings)?;
-            bar.inc(1);
-            Ok(record)
+        let records = of_each(&omega, bar, |&value| {
+            Ok(follow(&Parameter::Omega.at(*scene, value)?, None, Stretch::default(), &settings)?)
         })?;
         let sweep = |values: &[f64]| {
             let periods = Periods { settle: SETTLE[1], record: RECORD };
@@ -68,9 +66,8 @@ impl Motions {
         let rest = independent_orbits(scene, Parameter::Omega, &omega, periods, &settings, || bar.inc(1))?;
         let orbits = [rest, up?, back];
         let indices: Vec<usize> = (0..omega.len()).collect();
-        let coexisting =
-            for_each(&indices, |&index| coexisting(plan, scene, index, &records[index], &orbits))?;
-        let coexisting = coexisting.into_iter().flatten().collect();
+        let differ = |&index: &usize| coexisting(plan, scene, index, &records[index], &orbits);
+        let coexisting = of_each(&indices, &Silent, differ)?.into_iter().flatten().collect();
         Ok(Self { omega, regimes: records.iter().map(classify).collect(), orbits, coexisting })
     }
 
@@ -141,7 +138,7 @@ struct Part {
 
 /// Where periodic motions begin and end.
 pub fn begins(plan: &Plan, all: &[(Family, Motions)]) -> Result<Table, Error> {
-    let found = for_each(all, |(family, motions)| {
+    let found = of_each(all, &Silent, |(family, motions)| {
         let range = [motions.omega[0], motions.omega[motions.omega.len() - 1]];
         let samples = SAMPLES.min(motions.omega.len());
         let wanted =

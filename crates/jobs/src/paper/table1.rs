@@ -2,9 +2,10 @@
 //! window do its four rows have their four energies?
 
 use super::item::Item;
-use super::measures::{Spread, at_omega, energy, for_each, near};
+use super::measures::{Spread, at_omega, energy, near};
 use super::plan::{Plan, damper};
 use crate::Error;
+use crate::rows::of_each;
 use crate::tune::log::{csv_header, scientific};
 use rayon::prelude::*;
 use retune_dynamics::{Stretch, classify, follow};
@@ -200,11 +201,7 @@ fn protocols(plan: &Plan, item: &mut Item) -> Result<(), Error> {
         }
     }
     let bar = plan.watch.progress("table 1, protocols", wanted.len() as u64);
-    let mut all = for_each(&wanted, |protocol| {
-        let outcome = protocol.run(plan);
-        bar.inc(1);
-        outcome
-    })?;
+    let mut all = of_each(&wanted, &*bar, |protocol| protocol.run(plan))?;
     bar.finish();
     all.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
     let count = all.len();
