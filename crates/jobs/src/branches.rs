@@ -1,16 +1,12 @@
 //! The job `branches`: every periodic motion that runs of a scene lead to along a parameter, and those that branch off; which of them
 //! are stable, where they begin and end and by which bifurcation, what coexists, and the largest E1max over all of it.
 //!
-//! The motions are found by `retune_dynamics::periodic`. Read `options` (what is asked for), `motions` (what is found), `tables` (what is written), `draw`, `page`, `basins`, and
-//! `again`, which computes rows of the tables again.
+//! The motions are found by `retune_dynamics::periodic`. Read `options` (what is asked for), `motions` (what is found), `tables` (what is written, and how rows are computed again), `draw`, `page`.
 
-mod again;
-mod basins;
 mod draw;
 mod motions;
 mod options;
 mod page;
-mod remedy;
 mod tables;
 
 pub use motions::{Margin, Motions};
@@ -32,11 +28,11 @@ pub static KIND: Kind = Kind {
     answer: "branches.json",
     artefacts: &[
         artefact(resolved::SEVERAL, Content::Input),
-        artefact(tables::BRANCHES, Content::Rows(again::again)),
-        artefact(tables::BIFURCATIONS, Content::Rows(again::again)),
-        artefact(tables::ATTRACTORS, Content::Rows(again::again)),
+        artefact(tables::BRANCHES, Content::Rows(tables::again)),
+        artefact(tables::BIFURCATIONS, Content::Rows(tables::again)),
+        artefact(tables::ATTRACTORS, Content::Rows(tables::again)),
         artefact(tables::STATES, Content::Derived),
-        artefact(tables::STARTS, Content::Rows(again::again)),
+        artefact(tables::STARTS, Content::Rows(tables::again)),
         artefact("branches.json", Content::Derived),
         artefact("branches.svg", Content::Derived),
         artefact("basins.svg", Content::Derived),
@@ -53,7 +49,6 @@ pub fn branches(request: &Request, options: &Options, watch: &dyn Observer) -> R
     let study = read(&request.study)?;
     let (plan, basins_at) = options.plan(&study)?;
     let request = request.placed(KIND.command, &study, plan.parameter.symbol())?;
-    let studies = [(study.name(), &study)];
     let mut said = plan_json(&plan);
     if options.margin {
         said["margin"] = true.into();
@@ -61,7 +56,7 @@ pub fn branches(request: &Request, options: &Options, watch: &dyn Observer) -> R
     if let Some(value) = basins_at {
         said["basins"] = value.into();
     }
-    let job = Job::of_studies(&KIND, &request, said, studies.into_iter())?;
+    let job = Job::of_studies(&KIND, &request, said, [(study.name(), &study)].into_iter())?;
     job.run(&request, watch, |directory| {
         let bar = watch.progress("runs from many starts", plan.samples as u64);
         let count = Control { done: &|| bar.inc(1), ..Control::default() };

@@ -5,11 +5,10 @@ mod descents;
 mod designs;
 mod draw;
 mod page;
-mod refinement;
+mod places;
 mod search;
 
-pub use candidate::{Candidate, SAME};
-pub use designs::{Certified, Fronts, Row};
+pub(crate) use candidate::SAME;
 
 use crate::artefact::{Content, Kind, artefact};
 use crate::job::{Done, Job, Made};
@@ -43,25 +42,22 @@ pub static KIND: Kind = Kind {
 ///
 /// # Errors
 /// A study is wrong, nothing can be computed, or the results cannot be written.
-pub fn fronts(request: &Request, watch: &dyn Observer) -> Result<Done<Fronts>, Error> {
+pub fn fronts(request: &Request, watch: &dyn Observer) -> Result<Done<()>, Error> {
     let plan = study::read_fronts(&request.study)?;
     let dampers = plan.dampers.iter().map(|(name, study)| (name.as_str(), study));
     let job = Job::of_studies(&KIND, request, json!(plan.said), dampers)?;
     job.run(request, watch, |directory| {
         let searches = Searches::new(directory, &job.order, watch);
-        let fronts = search::search(plan, &searches, watch)?;
+        let fronts = search::search(plan, &searches)?;
         for sweep in fronts.plan.sweeps() {
             directory.write(&format!("{}.csv", sweep.name()), &fronts.table(sweep).csv())?;
         }
         directory.write("front.csv", &fronts.front_table().csv())?;
-        for Certified { file, certificate, .. } in &fronts.certified {
-            directory.write_json(file, certificate)?;
+        for one in &fronts.certified {
+            directory.write_json(&one.file, &one.certificate)?;
         }
         page::write(&fronts, directory)?;
-        Ok(Made {
-            report: format!("\n{}", page::answer(&fronts).join("\n")),
-            answer: fronts,
-            parts: searches.results,
-        })
+        let report = format!("\n{}", page::answer(&fronts).join("\n"));
+        Ok(Made { report, answer: (), parts: searches.results })
     })
 }

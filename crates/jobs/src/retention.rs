@@ -10,7 +10,6 @@ mod anew;
 mod curves;
 mod draw;
 mod force;
-mod opening;
 mod page;
 mod range;
 mod retained;
@@ -19,11 +18,10 @@ mod tuned;
 
 pub use curves::Curve;
 pub use force::Forced;
-pub use range::{Criterion, Range, Threshold, best_tmd};
+pub use range::{Range, Threshold, best_tmd};
 pub use retained::Retained;
 pub use trade::Point;
-pub use tuned::label;
-pub use tuned::{Kept, Tuned, Tuning};
+pub use tuned::{Tuned, Tuning};
 
 use crate::artefact::{Content, Kind, artefact};
 use crate::designs::{Designs, Row};
@@ -35,7 +33,7 @@ use crate::summary::TunedDamper;
 use crate::{Error, Observer, Request};
 use retune_study::{self as study, Setting};
 use serde_json::json;
-use tuned::{CURVES, DESIGNS, FORCES};
+use tuned::{CURVES, DESIGNS, FORCES, RANGES};
 
 /// The files of the retention of tuning.
 pub static KIND: Kind = Kind {
@@ -45,7 +43,7 @@ pub static KIND: Kind = Kind {
         artefact(resolved::SEVERAL, Content::Input),
         artefact(DESIGNS, Content::Rows(again::again)),
         artefact(CURVES, Content::Rows(again::again)),
-        artefact("range.csv", Content::Rows(again::again)),
+        artefact(RANGES, Content::Rows(again::again)),
         artefact(FORCES, Content::Rows(again::again)),
         artefact("retune.txt", Content::Derived),
         artefact("retention.svg", Content::Derived),
@@ -85,52 +83,49 @@ pub fn retention(
         let mut searches = Searches::new(directory, &job.order, watch);
         let (mut dampers, mut designs) = (Vec::new(), Vec::new());
         for row in &rows {
-            let (tuned, rows) = anew::tune(row, &said, &others, &mut searches, watch)?;
+            let (tuned, rows) = anew::tune(row, &said, &others, &mut searches)?;
             designs.extend(paper(&tuned));
             designs.extend(rows.into_iter().map(|row| on_common_samples(&tuned, row, &k1)));
-            dampers.push(tuned);
+            dampers.push(tuned.judged()?);
         }
         let table = Designs { column: "tuning", rows: designs, infeasible: searches.infeasible.take() };
-        let criteria: Vec<Criterion> =
-            dampers.iter().map(|damper| Criterion::of(&damper.study)).collect::<Result<_, _>>()?;
-        let (curves, forced) = (curves::curves(&dampers, &criteria), force::forced(&dampers));
+        let (curves, forced) = (curves::curves(&dampers), force::forced(&dampers));
         let (mut kept, mut points) = (Vec::new(), Vec::new());
-        for (number, (damper, criterion)) in dampers.iter().zip(&criteria).enumerate() {
-            let point = |one: &Kept| Point::new((number, damper), Some(one.tuning), one.at, criterion);
-            kept.extend(damper.kept.iter().map(point));
-            points.extend(trade::trade(number, damper, criterion, &searches, watch)?);
+        for (number, damper) in dampers.iter().enumerate() {
+            kept.extend(damper.kept.iter().map(|(tuning, at)| Point::new((number, damper), *tuning, *at)));
+            points.extend(trade::trade(number, damper, &searches)?);
         }
         directory.write(FORCES, &force::table(&dampers, &forced).csv())?;
         directory.write(CURVES, &curves::table(&dampers, &curves).csv())?;
-        directory.write("range.csv", &trade::table(&dampers, kept.iter().chain(&points)).csv())?;
+        directory.write(RANGES, &trade::table(&dampers, kept.iter().chain(&points)).csv())?;
         table.write("retune", directory)?;
         let bounds = said.k2_bounds;
-        let retained = Retained { dampers, bounds, curves, criteria, forced, kept, points, table };
+        let retained = Retained { dampers, bounds, curves, forced, kept, points, table };
         page::write(&retained, directory)?;
-        let report = format!("\n{}\n\n{}", opening::answer(&retained).join("\n"), retained.table.text());
+        let report = format!("\n{}\n\n{}", page::answer(&retained).join("\n"), retained.table.text());
         Ok(Made { report, answer: retained, parts: searches.results })
     })
 }
 
 /// A row with E1max on the common samples, so that designs are compared on the same frequencies.
 fn on_common_samples(tuned: &Tuned, row: Row, k1: &[f64]) -> Row {
-    let at = row.found.design_of(tuned.study.varied());
+    let at = row.found.design_of(tuned.study().varied());
     let e1_max = tuned.energy_as_tuned(&row.label, &at, k1).unwrap_or(f64::NAN);
     Row { e1_max, ..row }
 }
 
 /// The row of the paper's design at the stiffness of its study. It has no certificate here.
 fn paper(tuned: &Tuned) -> Option<Row> {
-    let (at, damper) = (tuned.of(Tuning::Paper)?, tuned.study.scene.damper?);
+    let (at, damper) = (tuned.of(Tuning::Paper)?, tuned.study().scene.damper?);
     Some(Row {
         label: Tuning::Paper.name().to_owned(),
         damper: tuned.name.clone(),
-        found: TunedDamper::of(&at.on(damper), tuned.study.varied()),
+        found: TunedDamper::of(&at.on(damper), tuned.study().varied()),
         printed: None,
         e1_max: tuned.energy(&at, tuned.nominal()),
-        none: tuned.study.energy_without_damper(),
+        none: tuned.study().energy_without_damper(),
         verdict: "",
         reason: "the paper's design is not certified here".to_owned(),
-        needs: Largest::of(&tuned.study, &tuned.study.scene_at(&at)?),
+        needs: Largest::of(tuned.study(), &tuned.study().scene_at(&at)?),
     })
 }

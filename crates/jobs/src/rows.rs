@@ -1,7 +1,7 @@
 //! The rows of a table that are known before any of them is computed: those of a grid, of a sweep. They are computed in parallel; what the
 //! journal knows is not computed again; a share of them can be computed on another machine (`parts`).
 
-use crate::Progress;
+use crate::{Error, Progress};
 use rayon::prelude::*;
 use retune_store::Journal;
 use std::ops::Range;
@@ -50,4 +50,17 @@ pub fn compute(
         (numbers, made.and_then(|(_, reason)| reason))
     };
     some.into_par_iter().map(row).collect()
+}
+
+/// What a function gives for each of some things, side by side. The progress is told of each.
+///
+/// # Errors
+/// That of the first thing for which it fails, not of the first thread.
+pub fn of_each<T: Sync, U: Send>(
+    all: &[T],
+    progress: &dyn Progress,
+    of: impl Fn(&T) -> Result<U, Error> + Sync + Send,
+) -> Result<Vec<U>, Error> {
+    let made: Vec<Result<U, Error>> = all.par_iter().map(of).inspect(|_| progress.inc(1)).collect();
+    made.into_iter().collect()
 }

@@ -1,10 +1,10 @@
 //! The searches that a larger job is made of, each a job of its own below the directory of the whole.
 
 use crate::observer::Quiet;
+use crate::rows::of_each;
 use crate::tune::ends::{Ends, ends};
 use crate::tune::{Optimum, optimize};
 use crate::{Error, Observer};
-use rayon::prelude::*;
 use retune_store::{Directory, Journal, Order};
 use retune_study::Study;
 
@@ -12,7 +12,8 @@ use retune_study::Study;
 pub struct Searches<'a> {
     directory: &'a Directory,
     order: &'a Order,
-    watch: &'a dyn Observer,
+    /// Who is told of them.
+    pub watch: &'a dyn Observer,
     /// The results made so far.
     pub results: Vec<Directory>,
     /// The error of the first search that found none within its limits.
@@ -50,13 +51,10 @@ impl<'a> Searches<'a> {
     pub fn ends_of_all(&self, all: &[(Study, String)]) -> Result<Vec<Ends>, Error> {
         let bar = self.watch.progress("searches", all.len() as u64);
         let quiet = Quiet(self.watch);
-        let search = |(study, name): &(Study, String)| {
-            let ends = ends(study, self.journal(), &format!("{name} "), &quiet);
-            bar.inc(1);
-            ends
-        };
-        let ends: Vec<Result<Ends, Error>> = all.par_iter().map(search).collect();
+        let search =
+            |(study, name): &(Study, String)| ends(study, self.journal(), &format!("{name} "), &quiet);
+        let ends = of_each(all, &*bar, search);
         bar.finish();
-        ends.into_iter().collect()
+        ends
     }
 }

@@ -1,12 +1,14 @@
-//! The figure of `branches`: E1max of all motions along the parameter, stable and unstable, with the bifurcations; below it the stroke.
+//! The figures of `branches`: E1max of all motions along the parameter, stable and unstable, with the bifurcations, below it the stroke; and
+//! the basins.
 
-use crate::branches::motions::Motions;
+use crate::branches::motions::{Motions, energy};
 use crate::pages::abscissa;
-use retune_dynamics::periodic::{Branch, EventKind, Orbit};
+use retune_dynamics::periodic::{Basins, Branch, EventKind, Orbit};
 use retune_model::Measure;
 use retune_report::colour::{BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION};
 use retune_report::{
-    Axis, Chart, Dash, Drawing, Key, Layer, Mark, Scale, Shape, Sheet, Stroke, Width, drawing,
+    Axis, Chart, Dash, Drawing, Key, Layer, Mark, Nodes, Place, Scale, Shape, Sheet, Stroke, Width, drawing,
+    heat_map, svg,
 };
 
 const STABLE: Stroke = Stroke::new(BLUE, 1.4, Dash::Solid);
@@ -28,14 +30,7 @@ fn mark(kind: EventKind) -> Mark {
     }
 }
 
-/// A quantity that is drawn: its label and its value.
-type Drawn = (&'static str, fn(&Orbit) -> f64);
-const DRAWN: [Drawn; 2] = [
-    ("E1max, J", |orbit| orbit.seen.largest(Measure::Energy)),
-    ("stroke, m", |orbit| orbit.seen.largest(Measure::Stroke)),
-];
-
-/// The figure.
+/// All motions along the parameter.
 pub fn draw(motions: &Motions) -> Drawing {
     let mut legend = vec![
         (Key::Line(STABLE), "stable motions".to_owned()),
@@ -53,7 +48,8 @@ pub fn draw(motions: &Motions) -> Drawing {
     if !irregular.is_empty() {
         legend.push((Key::Area(GREY, IRREGULAR), "no stable periodic motion known".to_owned()));
     }
-    let charts = DRAWN.iter().enumerate().map(|(i, drawn)| chart(motions, drawn, i == 0)).collect();
+    let stroke = |orbit: &Orbit| orbit.seen.largest(Measure::Stroke);
+    let charts = vec![chart(motions, "E1max, J", energy, true), chart(motions, "stroke, m", stroke, false)];
     let caption = vec![motions.made_by()];
     let sheet =
         Sheet { width: Width::Page, stacked: true, legend, caption, ..Sheet::of("Periodic motions", charts) };
@@ -65,7 +61,7 @@ pub fn draw(motions: &Motions) -> Drawing {
     drawing(&Sheet { description, ..sheet })
 }
 
-fn chart(motions: &Motions, (label, value): &Drawn, is_first: bool) -> Chart {
+fn chart(motions: &Motions, label: &str, value: fn(&Orbit) -> f64, is_first: bool) -> Chart {
     let plan = &motions.branches.plan;
     let [_, irregular] = motions.branches.stable_and_irregular();
     let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
@@ -90,8 +86,8 @@ fn chart(motions: &Motions, (label, value): &Drawn, is_first: bool) -> Chart {
         }
     }
     values.extend(others.iter().chain(&rest).map(|(_, value)| *value));
-    layers.extend(branches.iter().map(|branch| line(branch, *value, false)));
-    layers.extend(branches.iter().map(|branch| line(branch, *value, true)));
+    layers.extend(branches.iter().map(|branch| line(branch, value, false)));
+    layers.extend(branches.iter().map(|branch| line(branch, value, true)));
     layers.push(Layer::Marks { points: others, mark: OTHERS });
     layers.push(Layer::Marks { points: rest, mark: REST });
     for branch in branches {
@@ -101,7 +97,7 @@ fn chart(motions: &Motions, (label, value): &Drawn, is_first: bool) -> Chart {
             layers.push(Layer::Marks { points, mark: mark(kind) });
         }
     }
-    let (y, [from, to]) = (Axis::fitting(*label, &values), plan.range);
+    let (y, [from, to]) = (Axis::fitting(label, &values), plan.range);
     let x = abscissa(plan.parameter, Scale::Linear, (from, to), is_first);
     Chart::of(x, y, layers, if is_first { 240.0 } else { 150.0 })
 }
@@ -117,4 +113,25 @@ fn line(branch: &Branch, value: fn(&Orbit) -> f64, stable: bool) -> Layer {
         }
     }
     Layer::Line { points, stroke: if stable { STABLE } else { UNSTABLE } }
+}
+
+/// The basins: E1max of the motion on which each start of a plane ends.
+pub fn basins(motions: &Motions, basins: &Basins) -> String {
+    let place = motions.at(basins.sample.value, 6);
+    let side = |label: &str, side: usize| Nodes {
+        label: label.to_owned(),
+        scale: Scale::Linear,
+        values: basins.sides[side].clone(),
+    };
+    let sides = [side("x1 at the start, m", 0), side("v1 at the start, m/s", 1)];
+    let end = |end: &Option<usize>| end.map_or(f64::NAN, |end| energy(&basins.sample.attractors[end].orbit));
+    let energies: Vec<f64> = basins.ends.iter().map(end).collect();
+    let places = [Place { at: (0.0, 0.0), label: "from rest".to_owned() }];
+    let (chart, legend) = heat_map(&sides, &energies, "E1max, J", &places);
+    let irregular =
+        if basins.ends.contains(&None) { "; grey: none of the motions that are known" } else { "" };
+    let what = format!("E1max of the motion on which each start ends, at {place}{irregular}.");
+    let description = format!("{what} Marked: the start from rest.");
+    let sheet = Sheet::of(format!("Basins at {place}"), vec![chart]);
+    svg(&Sheet { description, legend, caption: vec![what, motions.made_by()], ..sheet })
 }

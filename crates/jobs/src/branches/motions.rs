@@ -7,7 +7,7 @@
 use crate::Error;
 use crate::certify::periodic;
 use retune_dynamics::periodic::branches::{Control, branches};
-use retune_dynamics::periodic::{Basins, Branch, Branches, Onset, Orbit, Sample, onset};
+use retune_dynamics::periodic::{Attractor, Basins, Branch, Branches, Onset, Orbit, Sample, onset};
 use retune_model::{Measure, Parameter};
 use retune_study::{Study, rounded, short};
 
@@ -52,7 +52,6 @@ impl Motions {
         Self { study, largest, branches, margin: None, basins: None }
     }
 
-    /// The parameter that they are followed along.
     pub(super) fn over(&self) -> Parameter {
         self.branches.plan.parameter
     }
@@ -69,8 +68,7 @@ impl Motions {
 
     /// The branches that no run from rest leads to, with stable motions of much more energy than any on branches that runs from rest do.
     fn others(&self) -> impl Iterator<Item = &Branch> {
-        let energy =
-            |i: usize| self.largest[i].as_ref().map_or(0.0, |orbit| orbit.seen.largest(Measure::Energy));
+        let energy = |i: usize| self.largest[i].as_ref().map_or(0.0, energy);
         let from_rest = |i: &usize| self.branches.is_reached_from_rest(*i);
         let usual = (0..self.largest.len()).filter(from_rest).map(energy).fold(0.0, f64::max);
         let is_other = move |(i, _): &(usize, &Branch)| !from_rest(i) && energy(*i) > NOTABLE * usual;
@@ -78,12 +76,48 @@ impl Motions {
     }
 }
 
+/// What some runs at a sample settle on.
+pub(super) struct Settled<'a> {
+    pub sample: &'a Sample,
+    /// The periodic motion; none of irregular ones.
+    pub on: Option<&'a Orbit>,
+    pub branch: Option<usize>,
+    pub starts: usize,
+    pub from_rest: bool,
+    /// The largest E1max, J.
+    pub energy: f64,
+}
+
+impl<'a> Settled<'a> {
+    /// Each periodic motion of a sample; then what is irregular, if anything is.
+    pub fn of(sample: &'a Sample) -> impl Iterator<Item = Self> {
+        let periodic = sample.attractors.iter().map(move |one| {
+            let Attractor { branch, orbit, starts, from_rest } = one;
+            let (on, energy) = (Some(orbit), energy(orbit));
+            Self { sample, on, branch: *branch, starts: *starts, from_rest: *from_rest, energy }
+        });
+        let (starts, from_rest) = (sample.irregular.len(), sample.rest_is_irregular);
+        let energy = most_irregular(sample);
+        let irregular = Self { sample, on: None, branch: None, starts, from_rest, energy };
+        periodic.chain((starts > 0).then_some(irregular))
+    }
+}
+
+/// [`Settled::of`] all samples.
+pub(super) fn settled(motions: &Motions) -> impl Iterator<Item = Settled<'_>> {
+    motions.branches.samples.iter().flat_map(Settled::of)
+}
+
 /// The largest E1max of the runs of a sample that settle on no periodic motion, J; 0 where there are none.
 pub(super) fn most_irregular(sample: &Sample) -> f64 {
     sample.irregular.iter().map(|seen| seen.largest(Measure::Energy)).fold(0.0, f64::max)
 }
 
-/// The periods and impacts of a motion in words.
+/// E1max of a motion, J.
+pub(super) fn energy(orbit: &Orbit) -> f64 {
+    orbit.seen.largest(Measure::Energy)
+}
+
 pub(super) fn kind(orbit: &Orbit) -> String {
     periodic(orbit.periods, &orbit.seen.impacts)
 }
@@ -95,9 +129,6 @@ pub(super) fn joule(value: f64) -> String {
 
 /// The margin of the force. None where the answer is not along ω, or nothing has an amplitude. Where there is such a motion already, nothing above the own force is
 /// tried.
-///
-/// # Errors
-/// A scene cannot be run.
 pub fn margin(motions: &Motions) -> Result<Option<Margin>, Error> {
     let plan = motions.branches.plan;
     let amplitude = motions.study.scene.forcing.amplitude().map(|(amplitude, own)| (amplitude, own.get()));
@@ -137,18 +168,17 @@ impl Margin {
                 "A motion that no run from rest leads to, with much more energy, is there at the scene's own force already: it has no margin."
                     .to_owned()
             }
-            None => format!(
-                "No isola was found up to {} times the force, {} N.",
-                short(tried / own),
-                short(*tried)
-            ),
+            None => {
+                let [times, force] = [tried / own, *tried].map(short);
+                format!("No isola was found up to {times} times the force, {force} N.")
+            }
             Some(Onset { value, omega, orbit }) => format!(
                 "Up to {} times the force, {} N, no isola was found; with more, one begins at omega = {} rad/s, {} J ({} \
                  periods, impacts {}).",
                 rounded(value / own, 6),
                 rounded(*value, 8),
                 rounded(*omega, 6),
-                rounded(orbit.seen.largest(Measure::Energy), 5),
+                joule(energy(orbit)),
                 orbit.periods,
                 orbit.seen.impacts
             ),

@@ -50,50 +50,41 @@ impl Default for Options {
 
 impl Options {
     /// The plan for a study, and the value at which basins are asked for.
-    ///
-    /// # Errors
-    /// An end is no number or out of range, or there are too many runs.
     pub(crate) fn plan(&self, study: &Study) -> Result<(Plan, Option<f64>), Error> {
         let Self { over, samples, starts, apart, fine, .. } = *self;
         study.begins_at_rest().map_err(Error::rule(study))?;
+        let refuse = |option, problem| Error::Argument { option, problem };
         if study.scene.damper.is_none() {
             let problem = "the scene has no damper: its steady response is known in closed form".to_owned();
-            return Err(Error::Argument { option: "STUDY", problem });
+            return Err(refuse("STUDY", problem));
         }
         if self.margin && over != Parameter::Omega {
             let problem = format!("an isola is looked for over omega, not over {}", over.symbol());
-            return Err(Error::Argument { option: "--margin", problem });
+            return Err(refuse("--margin", problem));
         }
         if !over.has_derivative() {
             let known = Parameter::differentiable(", ");
-            let problem = format!("{over}: branches are followed over one of {known}");
-            return Err(Error::Argument { option: "--over", problem });
+            return Err(refuse("--over", format!("{over}: branches are followed over one of {known}")));
         }
         let [low, high] = default_range(over, study)?;
         let end = |option, text: &Option<String>, otherwise: f64| {
             let value = text.as_ref().map_or(Ok(otherwise), |text| over.read(text));
-            let value = value.map_err(|problem| Error::Argument { option, problem })?;
+            let value = value.map_err(|problem| refuse(option, problem))?;
             match over.at(study.scene, value) {
                 Ok(_) if value.is_finite() && value > 0.0 => Ok(value),
-                _ => Err(Error::Argument {
-                    option,
-                    problem: format!("{value} {}: give a value above 0", over.unit()),
-                }),
+                _ => Err(refuse(option, format!("{value} {}: give a value above 0", over.unit()))),
             }
         };
         let range = [end("--from", &self.from, low)?, end("--to", &self.to, high)?];
         if range[0] >= range[1] {
-            let problem = format!("{} is not above --from {}", range[1], range[0]);
-            return Err(Error::Argument { option: "--to", problem });
+            return Err(refuse("--to", format!("{} is not above --from {}", range[1], range[0])));
         }
-        if !(2..=MOST).contains(&samples)
-            || starts.max(apart) > MOST
-            || !(fine == 0 || (2..=MOST).contains(&fine))
-        {
+        let runs = 2..=MOST;
+        if !runs.contains(&samples) || starts.max(apart) > MOST || fine != 0 && !runs.contains(&fine) {
             let problem = format!(
                 "give 2 to {MOST} samples, at most {MOST} starts of each kind at each, and 0 or 2 to {MOST} fine runs"
             );
-            return Err(Error::Argument { option: "--samples, --starts, --apart, --fine", problem });
+            return Err(refuse("--samples, --starts, --apart, --fine", problem));
         }
         let basins = self.basins.as_ref().map(|_| end("--basins", &self.basins, low)).transpose()?;
         let plan = Plan { samples, starts, apart, fine, passes: SPACINGS.len(), ..Plan::over(over, range) };

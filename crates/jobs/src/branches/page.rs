@@ -1,16 +1,14 @@
 //! The page of `branches`, and its answer in words. Every number on it is one of the tables beside it.
 
-use crate::branches::basins;
-use crate::branches::draw::draw;
-use crate::branches::motions::{Margin, Motions, joule, kind, most_irregular};
-use crate::branches::remedy::{Remedy, remedies};
-use crate::branches::tables::{ATTRACTORS, BIFURCATIONS, BRANCHES, STATES, bifurcations};
+use crate::branches::draw;
+use crate::branches::motions::{Margin, Motions, Settled, energy, joule, kind, most_irregular, settled};
+use crate::branches::tables::{ATTRACTORS, BIFURCATIONS, BRANCHES, STARTS, STATES, bifurcations};
 use crate::columns::column;
 use crate::summary::TunedDamper;
 use crate::{Error, pages};
-use retune_dynamics::periodic::Attractor;
-use retune_dynamics::periodic::{Branch, End, EventKind, Orbit, Sample};
-use retune_model::Measure;
+use retune_dynamics::periodic::trace::trace;
+use retune_dynamics::periodic::{Basins, Branch, End, EventKind, Orbit, Sample};
+use retune_model::{Bare, Measure, Parameter};
 use retune_report::document::{Block, Document};
 use retune_store::Directory;
 use retune_study::{counted, rounded, short};
@@ -18,14 +16,10 @@ use retune_study::{counted, rounded, short};
 /// Most rows of a table on the page; the files hold all.
 const MOST: usize = 40;
 
-/// Writes the page in both forms, and its figure.
-///
-/// # Errors
-/// A file cannot be written.
 pub fn write(motions: &Motions, directory: &Directory) -> Result<(), Error> {
     let symbol = motions.over().symbol();
     let caption = format!("E1max and stroke of the periodic motions against {symbol}");
-    let figure = Block::figure("branches.svg", draw(motions), caption);
+    let figure = Block::figure("branches.svg", draw::draw(motions), caption);
     let files =
         [BRANCHES, BIFURCATIONS, ATTRACTORS, STATES, "branches.json", "resolved.json", "manifest.json"];
     let mut sections = vec![
@@ -35,7 +29,7 @@ pub fn write(motions: &Motions, directory: &Directory) -> Result<(), Error> {
         ("data", "Data", vec![Block::files(&files)]),
     ];
     if let Some(own) = &motions.basins {
-        sections.insert(3, ("basins", "Where starts end", basins::blocks(motions, own)));
+        sections.insert(3, ("basins", "Where starts end", basins(motions, own)));
     }
     let page = Document {
         title: format!("{}: periodic motions along {symbol}", motions.study.name()),
@@ -50,15 +44,11 @@ const EVENTS: &str = "At a fold a branch turns back: stable and unstable motions
     period doubling a motion of twice the period branches off, at a Neimark-Sacker bifurcation amplitude-modulated ones. At a grazing an impact \
     begins or ends, at no speed; a Hertz contact is soft enough for the branch to go on.";
 
-/// What was done.
 fn plan_words(motions: &Motions) -> String {
     let plan = &motions.branches.plan;
     let (symbol, unit, [from, to]) = (plan.parameter.symbol(), plan.parameter.unit(), plan.range);
-    let damper = motions
-        .study
-        .scene
-        .damper
-        .map_or(String::new(), |damper| TunedDamper::of(&damper, motions.study.varied()).words(|_| 5));
+    let words = |damper| TunedDamper::of(&damper, motions.study.varied()).words(|_| 5);
+    let damper = motions.study.scene.damper.map_or(String::new(), words);
     let more = [
         (plan.fine, "value", " A run from rest at each of # leads to the branches that this has missed."),
         (plan.apart, "run", " From # at each of the former, Newton's iteration looks for other motions."),
@@ -88,34 +78,22 @@ pub fn answer(motions: &Motions) -> Vec<String> {
     let largest = motions.largest.iter().enumerate();
     let mut most: Vec<(usize, &Orbit)> =
         largest.filter_map(|(i, orbit)| Some((i, orbit.as_ref()?))).collect();
-    most.sort_by(|a, b| b.1.seen.largest(Measure::Energy).total_cmp(&a.1.seen.largest(Measure::Energy)));
+    most.sort_by(|a, b| energy(b.1).total_cmp(&energy(a.1)));
     let reached = |(number, orbit): &(usize, &Orbit)| {
-        let place = motions.at(orbit.value, 6);
-        format!(
-            "{} J at {place}, on branch {number} ({})",
-            joule(orbit.seen.largest(Measure::Energy)),
-            kind(orbit)
-        )
+        let (energy, place) = (joule(energy(orbit)), motions.at(orbit.value, 6));
+        format!("{energy} J at {place}, on branch {number} ({})", kind(orbit))
     };
-    if let Some(first) = most.first() {
-        words.push(format!("The largest E1max of all stable motions: {}.", reached(first)));
-        if !all.is_reached_from_rest(first.0) {
-            let usual = most.iter().find(|(other, _)| all.is_reached_from_rest(*other));
-            words.extend(usual.map(|usual| {
-                format!(
-                    "No run from rest that was made ends on it. The largest on branches that runs from rest end on: {}.",
-                    reached(usual)
-                )
-            }));
-            let ways: Vec<String> =
-                remedies(&all.branches[first.0], first.1).iter().map(Remedy::words).collect();
-            if !ways.is_empty() {
-                words.push(format!(
-                    "What removes that motion, at {} and all else as it is: {}.",
-                    motions.at(first.1.value, 6),
-                    ways.join("; ")
-                ));
-            }
+    words.extend(
+        most.first().map(|first| format!("The largest E1max of all stable motions: {}.", reached(first))),
+    );
+    if let Some((number, first)) = most.first().filter(|(number, _)| !all.is_reached_from_rest(*number)) {
+        let usual = most.iter().find(|(other, _)| all.is_reached_from_rest(*other)).map(reached);
+        words.extend(usual.map(|usual| format!("No run from rest that was made ends on it. The largest on branches that runs from rest end on: {usual}.")));
+        let remedy = |parameter| remedy(&all.branches[*number], first, parameter);
+        let ways: Vec<String> = TRIED.into_iter().filter_map(remedy).collect();
+        if !ways.is_empty() {
+            let (place, ways) = (motions.at(first.value, 6), ways.join("; "));
+            words.push(format!("What removes that motion, at {place} and all else as it is: {ways}."));
         }
     }
     words.extend(all.branches.iter().enumerate().filter_map(|(i, branch)| isola(motions, i, branch)));
@@ -134,16 +112,13 @@ pub fn answer(motions: &Motions) -> Vec<String> {
         let within = |sample: &&Sample| sample.value >= *from && sample.value <= *to;
         let most = all.samples.iter().filter(within).map(most_irregular).fold(0.0, f64::max);
         let seen = if most > 0.0 { format!("; runs there reach {} J", joule(most)) } else { String::new() };
-        words.push(format!(
-            "From {symbol} = {} to {} {unit} no stable periodic motion is known{seen}.",
-            rounded(*from, 6),
-            rounded(*to, 6)
-        ));
+        let [from, to] = [from, to].map(|end| rounded(*end, 6));
+        words
+            .push(format!("From {symbol} = {from} to {to} {unit} no stable periodic motion is known{seen}."));
     }
     words
 }
 
-/// A closed branch in words.
 fn isola(motions: &Motions, number: usize, branch: &Branch) -> Option<String> {
     if branch.ends != [End::Closed; 2] {
         return None;
@@ -157,7 +132,7 @@ fn isola(motions: &Motions, number: usize, branch: &Branch) -> Option<String> {
         rounded(low, 8),
         rounded(high, 8),
         kind(most),
-        joule(most.seen.largest(Measure::Energy))
+        joule(energy(most))
     ))
 }
 
@@ -167,7 +142,6 @@ fn span(branch: &Branch) -> [f64; 2] {
     [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
 }
 
-/// The branches.
 fn branches(motions: &Motions) -> Block {
     let rows = motions.branches.branches.iter().enumerate().take(MOST).map(|(number, branch)| {
         let stable = (0..branch.points.len()).filter(|i| branch.is_stable_at(*i)).count();
@@ -179,7 +153,7 @@ fn branches(motions: &Motions) -> Block {
             branch.shooting.periods.to_string(),
             format!("{} to {}", rounded(low, 6), rounded(high, 6)),
             format!("{stable} of {}", branch.points.len()),
-            most.map_or("-".to_owned(), |orbit| joule(orbit.seen.largest(Measure::Energy))),
+            most.map_or("-".to_owned(), |orbit| joule(energy(orbit))),
             most.map_or(String::new(), |orbit| rounded(orbit.value, 6)),
             most.map_or(String::new(), |orbit| orbit.seen.impacts.clone()),
             if first == last { first.to_owned() } else { format!("{first}; {last}") },
@@ -239,36 +213,18 @@ fn starts(motions: &Motions) -> String {
 /// What runs settle on, where it is a motion that no run from rest leads to, or none that repeats.
 fn attractors(motions: &Motions) -> Block {
     let is_usual =
-        |one: &Attractor| one.branch.is_some_and(|branch| motions.branches.is_reached_from_rest(branch));
-    let row =
-        |sample: &Sample, branch: Option<usize>, what: String, energy: f64, starts: usize, rest: bool| {
-            vec![
-                rounded(sample.value, 6),
-                branch.map_or("-".to_owned(), |branch| branch.to_string()),
-                what,
-                joule(energy),
-                format!("{starts} of {}", sample.starts),
-                if rest { "yes" } else { "no" }.to_owned(),
-            ]
-        };
-    let mut rows = Vec::new();
-    for sample in &motions.branches.samples {
-        for one in sample.attractors.iter().filter(|one| !is_usual(one)) {
-            let Attractor { branch, orbit, starts, from_rest } = one;
-            rows.push(row(
-                sample,
-                *branch,
-                kind(orbit),
-                orbit.seen.largest(Measure::Energy),
-                *starts,
-                *from_rest,
-            ));
-        }
-        if !sample.irregular.is_empty() {
-            let (starts, rest) = (sample.irregular.len(), sample.rest_is_irregular);
-            rows.push(row(sample, None, "irregular".to_owned(), most_irregular(sample), starts, rest));
-        }
-    }
+        |one: &Settled| one.branch.is_some_and(|branch| motions.branches.is_reached_from_rest(branch));
+    let row = |Settled { sample, on, branch, starts, from_rest, energy }: Settled| {
+        vec![
+            rounded(sample.value, 6),
+            branch.map_or("-".to_owned(), |branch| branch.to_string()),
+            on.map_or("irregular".to_owned(), kind),
+            joule(energy),
+            format!("{starts} of {}", sample.starts),
+            if from_rest { "yes" } else { "no" }.to_owned(),
+        ]
+    };
+    let rows: Vec<Vec<String>> = settled(motions).filter(|one| !is_usual(one)).map(row).collect();
     let head =
         [&*column(motions.over().symbol()).heading(), "branch", "motion", "E1max, J", "starts", "from rest"];
     let words = if rows.is_empty() {
@@ -279,4 +235,82 @@ fn attractors(motions: &Motions) -> Block {
         )
     };
     Block::table(words, head, rows)
+}
+
+/// The parameters of which one is told how far it can be changed before a motion vanishes: the gaps, the dashpot, the spring, whatever forces
+/// the structure.
+const TRIED: [Parameter; 8] = [
+    Parameter::D,
+    Parameter::C,
+    Parameter::C2,
+    Parameter::K2,
+    Parameter::P,
+    Parameter::Imbalance,
+    Parameter::Base,
+    Parameter::BaseAcceleration,
+];
+/// How far a parameter is changed, as a share of its value.
+const REACH: [f64; 2] = [0.3, 3.0];
+
+/// What removes a motion of a branch: how far a parameter can be changed before it vanishes at a fold, in words: "D above 0.636 m (28.4 mm
+/// more)". None where no fold was found within reach.
+fn remedy(branch: &Branch, orbit: &Orbit, parameter: Parameter) -> Option<String> {
+    let own = parameter.of(&branch.shooting.forced.scene).filter(|own| *own > 0.0)?;
+    let shooting = branch.shooting.along(orbit.value, parameter, own).ok()?;
+    let seed = shooting.correct_at_value(&shooting.unknowns(&orbit.states, own))?;
+    let along = trace(&shooting, &seed, REACH.map(|share| share * own), &|| true)?;
+    let seed = along.points.iter().position(|point| point.value == own)?;
+    let folds = || along.events.iter().filter(|event| event.kind == EventKind::Fold);
+    // Traced towards larger values first. A closed branch comes back from the other side.
+    let closed = along.ends == [End::Closed; 2];
+    let below = folds().rfind(|event| event.place < seed || closed).map(|event| event.orbit.value);
+    let above = folds().find(|event| event.place > seed).map(|event| event.orbit.value);
+    let way = |end: f64, side: &str, more: &str| {
+        let (unit, change) = (parameter.unit(), (end - own).abs());
+        let change = match unit {
+            "m" => format!("{:.1} mm", 1e3 * change),
+            _ => format!("{} {unit}", rounded(change, 3)),
+        };
+        format!("{} {side} {} {unit} ({change} {more})", parameter.symbol(), rounded(end, 4))
+    };
+    let above = above.filter(|end| *end > own).map(|end| way(end, "above", "more"));
+    let below = below.filter(|end| *end < own).map(|end| way(end, "below", "less"));
+    let ways: Vec<String> = above.into_iter().chain(below).collect();
+    (!ways.is_empty()).then(|| ways.join(" or "))
+}
+
+/// The basins at one value of the parameter.
+fn basins(motions: &Motions, basins: &Basins) -> Vec<Block> {
+    let place = motions.at(basins.sample.value, 6);
+    let words = format!(
+        "{} at {place}: at a crest of the force the structure is displaced by x1 and has the speed v1, with the damper at rest in it. Each run is \
+         followed until it is within 1e-4 of a motion on which runs from other starts settle there, for 480 periods at most. The last column is \
+         the least E1 of these starts: how hard the structure must be pushed to get there.",
+        counted(basins.ends.len() as u64, "start")
+    );
+    let known = (0..basins.sample.attractors.len()).map(Some);
+    let others = basins.ends.contains(&None).then_some(None);
+    let rows = known.chain(others).map(|motion| ends_on(motions, basins, motion)).collect();
+    let head = ["motion", "branch", "what it is", "E1max, J", "starts", "least E1 of them, J"];
+    let said = format!("Where the starts of the plane end; {STARTS} has each.");
+    let caption = format!("E1max of the motion on which each start ends, at {place}");
+    let figure = Block::figure("basins.svg", draw::basins(motions, basins), caption);
+    vec![Block::words(words), figure, Block::table(said, head, rows)]
+}
+
+/// The starts that end on a motion, or on none of those that are known.
+fn ends_on(motions: &Motions, basins: &Basins, motion: Option<usize>) -> Vec<String> {
+    let one = motion.map(|number| &basins.sample.attractors[number]);
+    let own = || basins.starts().filter(|(_, end)| *end == motion).map(|(start, _)| start);
+    let bare = Bare::new(&motions.study.scene.primary, &motions.study.scene.forcing);
+    let push = own().map(|[x1, v1]| bare.primary_energy(x1, v1)).fold(f64::INFINITY, f64::min);
+    let or_none = |text: Option<String>| text.unwrap_or_else(|| "-".to_owned());
+    vec![
+        or_none(motion.map(|number| number.to_string())),
+        or_none(one.and_then(|one| one.branch).map(|branch| branch.to_string())),
+        one.map_or("irregular, or none of these".to_owned(), |one| kind(&one.orbit)),
+        or_none(one.map(|one| joule(energy(&one.orbit)))),
+        format!("{} %", rounded(100.0 * own().count() as f64 / basins.ends.len() as f64, 3)),
+        or_none(push.is_finite().then(|| rounded(push, 3))),
+    ]
 }

@@ -1,13 +1,22 @@
-//! The tables of `branches`, and its answer as data.
+//! The tables of `branches`, their rows computed again, and its answer as data.
 
-use crate::branches::motions::{Motions, most_irregular};
-use crate::columns;
-use retune_dynamics::periodic::Attractor;
-use retune_dynamics::periodic::{Basins, Onset, Orbit};
+use crate::Error;
+use crate::again::{Row, Source, broken, each_row};
+use crate::branches::motions::{Motions, Settled, energy, settled};
+use crate::branches::options::{plan_json, plan_of};
+use crate::columns::{self, STATE};
+use crate::resolved::{Resolved, SEVERAL};
+use retune_dynamics::periodic::branches::{Plan, sample};
+use retune_dynamics::periodic::forced::settings_of;
+use retune_dynamics::periodic::seen::seen;
+use retune_dynamics::periodic::{Basins, Onset, Orbit, Plane};
 use retune_model::Measure;
 use retune_report::cells;
 use retune_report::table::{Cell, Table};
+use retune_study::Study;
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::path::Path;
 
 /// A row for each motion of each branch.
 pub const BRANCHES: &str = "branches.csv";
@@ -20,7 +29,6 @@ pub const STATES: &str = "states.csv";
 /// A row for each start of a plane: the number of the motion on which it ends.
 pub const STARTS: &str = "starts.csv";
 
-/// All of them, each with the name of its file.
 pub fn tables(motions: &Motions) -> Vec<(&'static str, Table)> {
     let mut all = vec![
         (BRANCHES, branches(motions)),
@@ -33,24 +41,19 @@ pub fn tables(motions: &Motions) -> Vec<(&'static str, Table)> {
 }
 
 fn branches(motions: &Motions) -> Table {
-    let over = motions.over().symbol();
-    let first = ["branch", "place", over, "periods", "impacts", "stable"];
-    let values = ["E1max", "x1max", "stroke", "contact_force", "multiplier"];
-    let mut table = columns::table(&[&first[..], &values].concat());
-    for (number, place, orbit) in points(motions) {
+    let values = [Measure::Energy, Measure::Displacement, Measure::Stroke, Measure::ContactForce];
+    let names = [
+        &["branch", "place", motions.over().symbol(), "periods", "impacts", "stable"],
+        &values.map(Measure::name)[..],
+        &["multiplier"],
+    ];
+    let row = |(number, place, orbit): (usize, usize, &Orbit)| {
         let Orbit { value, periods, seen, multipliers, .. } = orbit;
         let first = cells![number, place, *value, *periods, seen.impacts.as_str(), orbit.is_stable()];
-        let multiplier = multipliers[0].norm();
-        let values = cells![
-            seen.largest(Measure::Energy),
-            seen.largest(Measure::Displacement),
-            seen.largest(Measure::Stroke),
-            seen.largest(Measure::ContactForce),
-            multiplier
-        ];
-        table.push([first, values].concat());
-    }
-    table
+        let values = values.map(|measure| Cell::from(seen.largest(measure)));
+        [first, values.into(), cells![multipliers[0].norm()]].concat()
+    };
+    columns::table(&names.concat()).with(points(motions).map(row))
 }
 
 fn states(motions: &Motions) -> Table {
@@ -80,7 +83,7 @@ pub fn bifurcations(motions: &Motions) -> Table {
         for event in &branch.events {
             let Orbit { value, periods, seen, multipliers, .. } = &event.orbit;
             let place = cells![number, event.place, event.kind.name(), *value, *periods];
-            let reached = cells![seen.impacts.as_str(), seen.largest(Measure::Energy)];
+            let reached = cells![seen.impacts.as_str(), energy(&event.orbit)];
             let multipliers = multipliers.iter().flat_map(|m| cells![m.re, m.im]).collect();
             table.push([place, reached, multipliers].concat());
         }
@@ -89,75 +92,118 @@ pub fn bifurcations(motions: &Motions) -> Table {
 }
 
 fn attractors(motions: &Motions) -> Table {
-    let motion = ["motion", "branch", "periods", "impacts"];
+    let motion = ["start", "motion", "branch", "periods", "impacts"];
     let starts = ["starts_of", "starts", "from_rest", "E1max", "x1", "v1", "x2", "v2"];
-    let mut table = columns::table(&[&[motions.over().symbol(), "start"], &motion[..], &starts].concat());
-    for sample in &motions.branches.samples {
-        let place = cells![sample.value, sample.number];
-        for Attractor { branch, orbit, starts, from_rest } in &sample.attractors {
-            let Orbit { periods, seen, states, .. } = orbit;
-            let motion = cells!["periodic", *branch, *periods, seen.impacts.as_str()];
-            let starts = cells![sample.starts, *starts, *from_rest, seen.largest(Measure::Energy)];
-            table.push([place.clone(), motion, starts, states[0].map(Cell::from).to_vec()].concat());
-        }
-        if !sample.irregular.is_empty() {
-            let motion = [cells!["irregular"], vec![Cell::Empty; 3]].concat();
-            let (starts, rest) = (sample.irregular.len(), sample.rest_is_irregular);
-            let starts = cells![sample.starts, starts, rest, most_irregular(sample)];
-            table.push([place, motion, starts, vec![Cell::Empty; 4]].concat());
-        }
-    }
-    table
+    let row = |Settled { sample, on, branch, starts, from_rest, energy }: Settled| {
+        let kind = if on.is_some() { "periodic" } else { "irregular" };
+        let place = cells![sample.value, sample.number, kind, branch, on.map(|orbit| orbit.periods)];
+        let impacts = cells![on.map(|orbit| orbit.seen.impacts.as_str())];
+        let starts = cells![sample.starts, starts, from_rest, energy];
+        let state = (0..STATE.len()).map(|i| on.map(|orbit| orbit.states[0][i]).into());
+        [place, impacts, starts, state.collect()].concat()
+    };
+    columns::table(&[&[motions.over().symbol()], &motion[..], &starts].concat())
+        .with(settled(motions).map(row))
 }
 
 fn starts(basins: &Basins) -> Table {
-    let mut table = columns::table(&["x1", "v1", "motion"]);
-    for ([x1, v1], end) in basins.starts() {
-        table.push(cells![x1, v1, end]);
-    }
-    table
+    let rows = basins.starts().map(|([x1, v1], end)| cells![x1, v1, end]);
+    columns::table(&["x1", "v1", "motion"]).with(rows)
 }
 
 /// The answer as data.
 pub fn summary(motions: &Motions) -> Value {
     let [stable, irregular] = motions.branches.stable_and_irregular();
-    let branches: Vec<Value> = motions
-        .branches
-        .branches
-        .iter()
-        .zip(&motions.largest)
-        .map(|(branch, most)| {
-            let events = branch.events.iter().map(|event| {
-                json!({ "kind": event.kind.name(), "value": event.orbit.value, "impacts": event.orbit.seen.impacts })
-            });
-            json!({
-                "periods": branch.shooting.periods,
-                "ends": branch.ends.map(|end| end.words()),
-                "points": branch.points.len(),
-                "events": events.collect::<Vec<_>>(),
-                "largest_stable": most.as_ref().map(|orbit| json!({
-                    "value": orbit.value,
-                    "E1max": orbit.seen.largest(Measure::Energy),
-                    "impacts": orbit.seen.impacts,
-                })),
-            })
+    let branches = motions.branches.branches.iter().zip(&motions.largest).map(|(branch, most)| {
+        let events = branch.events.iter().map(|event| {
+            json!({ "kind": event.kind.name(), "value": event.orbit.value, "impacts": event.orbit.seen.impacts })
+        });
+        json!({
+            "periods": branch.shooting.periods,
+            "ends": branch.ends.map(|end| end.words()),
+            "points": branch.points.len(),
+            "events": events.collect::<Vec<_>>(),
+            "largest_stable": most.as_ref().map(|orbit| json!({
+                "value": orbit.value,
+                "E1max": energy(orbit),
+                "impacts": orbit.seen.impacts,
+            })),
         })
-        .collect();
+    });
     json!({
         "study": motions.study.name(),
-        "plan": crate::branches::options::plan_json(&motions.branches.plan),
+        "plan": plan_json(&motions.branches.plan),
         "stable": stable,
         "irregular": irregular,
-        "branches": branches,
+        "branches": branches.collect::<Vec<_>>(),
         "margin": motions.margin.as_ref().map(|margin| json!({
             "P": margin.own,
             "tried": margin.tried,
             "birth": margin.birth.as_ref().map(|Onset { value, omega, orbit }| json!({
                 "P": value,
                 "omega": omega,
-                "E1max": orbit.seen.largest(Measure::Energy),
+                "E1max": energy(orbit),
                 "impacts": orbit.seen.impacts,
             })),
         })),
     })
+}
+
+/// The rows of one of the tables, computed again: motions from their states, what runs settle on, where starts end.
+///
+/// # Errors
+/// The input of the results cannot be read.
+pub(super) fn again(place: &Path, name: &str) -> Result<Source, Error> {
+    let resolved = Resolved::read(place)?;
+    let refuse = |problem: &str| broken(place, SEVERAL, problem);
+    let plan = plan_of(&resolved.plan).ok_or_else(|| refuse("its plan cannot be read"))?;
+    let (_, study) = resolved.studies()?.into_iter().next().ok_or_else(|| refuse("it names no study"))?;
+    if name == STARTS {
+        let value =
+            resolved.plan["basins"].as_f64().ok_or_else(|| refuse("`basins` is no number in its plan"))?;
+        let plane = Plane::new(&study.scene, plan, &study.solver.settings(), value, None)?;
+        return Ok(Source::new(move |row| Some(vec![("motion".to_owned(), start(&plane, row))])));
+    }
+    if name == ATTRACTORS {
+        return Ok(Source::new(move |row| Some(vec![("E1max".to_owned(), attractor(&study, plan, row)?)])));
+    }
+    let motion = |row: Row| ["branch", "place"].map(|name| row.text(name).to_owned());
+    let mut states: BTreeMap<[String; 2], Vec<[f64; 4]>> = BTreeMap::new();
+    each_row(&place.join(STATES), |_, row| {
+        states.entry(motion(row)).or_default().push(STATE.map(|(name, _)| row.number(name)));
+    })?;
+    Ok(Source::new(move |row| {
+        Some(vec![("E1max".to_owned(), orbit(&study, plan, states.get(&motion(row))?, row)?)])
+    }))
+}
+
+/// The number of the motion on which a start of the plane ends; NaN of none.
+fn start(plane: &Plane, row: Row) -> f64 {
+    let end = plane.end(["x1", "v1"].map(|name| row.number(name)));
+    end.map_or(f64::INFINITY, |end| end.map_or(f64::NAN, |number| number as f64))
+}
+
+/// E1max of a motion on a branch.
+fn orbit(study: &Study, plan: Plan, states: &[[f64; 4]], row: Row) -> Option<f64> {
+    let scene = plan.parameter.at(study.scene, row.number(plan.parameter.symbol())).ok()?;
+    let periods = row.text("periods").parse().ok()?;
+    let found = seen(&scene, &settings_of(&study.solver.settings()), periods, states);
+    Some(found.map_or(f64::INFINITY, |seen| seen.largest(Measure::Energy)))
+}
+
+/// E1max of what runs settle on.
+fn attractor(study: &Study, plan: Plan, row: Row) -> Option<f64> {
+    // Beside that from rest.
+    let others = row.text("starts_of").parse::<usize>().ok()?.checked_sub(1)?;
+    let (plan, value) = (Plan { starts: others, ..plan }, row.number(plan.parameter.symbol()));
+    let found = sample(&study.scene, plan, &study.solver.settings(), value, row.text("start").parse().ok());
+    let mut all = found.iter().flat_map(Settled::of);
+    let own = all.find(|Settled { on, starts, .. }| match on {
+        None => row.text("motion") != "periodic",
+        Some(orbit) => {
+            let own = [orbit.seen.impacts.clone(), starts.to_string(), orbit.periods.to_string()];
+            own == ["impacts", "starts", "periods"].map(|name| row.text(name))
+        }
+    });
+    Some(own.map_or(f64::INFINITY, |own| own.energy))
 }

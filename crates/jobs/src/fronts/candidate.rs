@@ -8,6 +8,7 @@ use retune_report::cells;
 use retune_report::table::Cell;
 use retune_study::Sweep;
 use std::cmp::Ordering;
+use std::fmt::Display;
 
 /// E1max that differs by less than this share is the same.
 pub const SAME: f64 = 0.01;
@@ -15,12 +16,31 @@ pub const SAME: f64 = 0.01;
 /// The verdict of a design that a descent found, until it is judged.
 pub(super) const CONTINUED: &str = "not certified";
 
+/// A damper under a bound.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Under {
+    pub damper: usize,
+    pub sweep: Sweep,
+    /// The bound, in the unit of the sweep.
+    pub bound: f64,
+}
+
+impl Under {
+    /// Its name in the journal.
+    pub(super) fn name(&self) -> String {
+        format!("{} {} {}", self.damper, self.sweep.name(), self.bound)
+    }
+}
+
+/// A bound in words: `k2 at most 400 N/m`.
+pub(super) fn at_most(sweep: Sweep, bound: impl Display) -> String {
+    format!("{} at most {bound} {}", sweep.name(), sweep.unit())
+}
+
 /// A design, evaluated on the samples of the study of fronts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
-    /// The number of its damper.
     pub damper: usize,
-    /// Its design.
     pub at: Design,
     /// The worst E1max over the band, J.
     pub e1_max: f64,
@@ -30,7 +50,6 @@ pub struct Candidate {
     pub stroke: f64,
     /// The largest contact force in any run, N.
     pub force: f64,
-    /// The verdict of its certificate.
     pub verdict: &'static str,
     /// The reason for it, if it has a certificate.
     pub reason: String,
@@ -40,8 +59,13 @@ pub struct Candidate {
 
 impl Candidate {
     /// By how much it is beyond a bound, as a share of it.
-    pub fn excess(&self, sweep: Sweep, bound: f64) -> f64 {
+    pub fn excess(&self, Under { sweep, bound, .. }: Under) -> f64 {
         (self.reached(sweep) / bound - 1.0).max(0.0)
+    }
+
+    /// Whether it is of the damper and keeps the bound.
+    pub fn keeps(&self, under: Under) -> bool {
+        self.damper == under.damper && self.excess(under) == 0.0
     }
 
     /// The value of a bounded quantity, in its unit.
@@ -63,19 +87,9 @@ impl Candidate {
         self.checked.is_some_and(|checked| checked > (1.0 + SAME) * self.e1_max)
     }
 
-    /// Whether it is of the same damper and has nearly the same E1max.
-    pub fn is_like(&self, other: &Self) -> bool {
-        self.damper == other.damper && (self.e1_max / other.e1_max - 1.0).abs() < SAME
-    }
-
     /// Whether its certificate says that other starts than rest lead to much more.
     pub fn is_unsafe(&self) -> bool {
         self.verdict == Verdict::FromRest.name()
-    }
-
-    /// Whether its certificate calls it robust.
-    pub fn is_robust(&self) -> bool {
-        self.verdict == Verdict::Robust.name()
     }
 
     /// Whether it is of the same damper and each parameter is within a twentieth, or a centimetre.
@@ -110,9 +124,8 @@ impl Candidate {
 }
 
 /// The design that keeps a bound first, then that which is beyond it by less.
-pub fn by_excess(a: &Candidate, b: &Candidate, sweep: Sweep, bound: f64) -> Ordering {
-    let [own, other] = [a, b].map(|design| design.excess(sweep, bound));
-    own.total_cmp(&other).then(a.known().total_cmp(&b.known()))
+pub fn by_excess(a: &Candidate, b: &Candidate, under: Under) -> Ordering {
+    a.excess(under).total_cmp(&b.excess(under)).then(a.known().total_cmp(&b.known()))
 }
 
 #[cfg(test)]
@@ -127,18 +140,10 @@ mod tests {
             Parameter::C2 => 35.0,
             _ => f64::NAN,
         };
-        let at = Design::new(value).expect("a design");
-        let design = Candidate {
-            damper: 0,
-            at,
-            e1_max: 600.0,
-            checked: None,
-            stroke: 0.5,
-            force: 0.0,
-            verdict: "steady",
-            reason: String::new(),
-            needs: None,
-        };
+        let (at, verdict, reason) = (Design::new(value).expect("a design"), "steady", String::new());
+        let (damper, checked, needs) = (0, None, None);
+        let [e1_max, stroke, force] = [600.0, 0.5, 0.0];
+        let design = Candidate { damper, at, e1_max, checked, stroke, force, verdict, reason, needs };
         assert_eq!(line(&design.cells(&Parameter::PAPER)), "600,,215,35,,,0.5,0\n");
     }
 }

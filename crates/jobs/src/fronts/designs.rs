@@ -3,20 +3,20 @@
 //! Every search finds a design. Afterwards all designs of a damper are evaluated on more samples of the band, and under each bound
 //! stands the best that keeps it, whichever search found it: so a looser bound is never worse.
 
-use super::candidate::{Candidate, SAME};
+use super::candidate::{Candidate, SAME, Under};
 use crate::Error;
+use crate::Silent;
 use crate::again::{Made, json};
 use crate::certify::{Certificate, certify};
 use crate::columns;
 use crate::needs::Largest;
 use crate::resampled::finer;
 use crate::resolved::Resolved;
-use rayon::prelude::*;
+use crate::rows::of_each;
 use retune_model::{Design, Measure, Parameter};
 use retune_report::cells;
 use retune_report::table::{Cell, Table};
 use retune_study::{FrontsPlan, Study, Sweep};
-use std::fmt::Display;
 use std::path::Path;
 
 /// The verdict of a damper that no search found.
@@ -29,22 +29,11 @@ const MOST: usize = 121;
 pub(super) const NEEDS: [Measure; 3] = [Measure::Displacement, Measure::Acceleration, Measure::GroundForce];
 
 /// The best design of a damper under a bound; none where no design that was found keeps it.
-#[derive(Debug)]
-pub struct Row<'a> {
-    /// The bounded quantity.
-    pub sweep: Sweep,
-    /// The bound, in the unit of the sweep.
-    pub bound: f64,
-    /// The index of the damper.
-    pub damper: usize,
-    /// Its best design.
-    pub design: Option<&'a Candidate>,
-}
+pub type Row<'a> = (Under, Option<&'a Candidate>);
 
 /// The designs that all searches found.
 #[derive(Debug)]
 pub struct Fronts {
-    /// The plan of the study of fronts.
     pub plan: FrontsPlan,
     /// Those of the searches, in their order.
     pub designs: Vec<Candidate>,
@@ -59,31 +48,18 @@ pub struct Fronts {
 /// A design that is certified: below the best of the first damper under the same bound.
 #[derive(Debug)]
 pub struct Certified {
-    /// The bounded quantity.
-    pub sweep: Sweep,
-    /// The bound, in the unit of the sweep.
-    pub bound: f64,
-    /// The design.
+    pub under: Under,
     pub design: Candidate,
-    /// The least E1max of the first damper under this bound, J.
-    pub reference: Option<f64>,
-    /// The name of the certificate's file.
     pub file: String,
-    /// The certificate.
     pub certificate: Certificate,
 }
 
 impl Fronts {
-    /// No design yet.
-    pub(super) fn new(plan: FrontsPlan) -> Self {
-        Self { plan, designs: Vec::new(), given: Vec::new(), none: None, certified: Vec::new() }
-    }
-
     /// The number of the design found that is the best of a damper under a bound; none where none keeps it. Of those as good, the best
     /// that is not known to do much worse from other starts than rest, nor is nearly one that does.
-    pub(super) fn row_index(&self, damper: usize, sweep: Sweep, bound: f64) -> Option<usize> {
-        let keeps = |design: &Candidate| design.damper == damper && design.excess(sweep, bound) == 0.0;
-        let mut kept: Vec<usize> = (0..self.designs.len()).filter(|&i| keeps(&self.designs[i])).collect();
+    pub(super) fn found(&self, under: Under) -> Option<usize> {
+        let mut kept: Vec<usize> =
+            (0..self.designs.len()).filter(|&i| self.designs[i].keeps(under)).collect();
         kept.sort_by(|&a, &b| self.designs[a].known().total_cmp(&self.designs[b].known()));
         let most = (1.0 + SAME) * self.designs[*kept.first()?].known();
         let unsafe_ones = || self.designs.iter().filter(|design| design.is_unsafe());
@@ -92,19 +68,22 @@ impl Fronts {
         as_good.find(is_safe).or(kept.first()).copied()
     }
 
+    /// The best design under a bound, that of the study among them.
+    fn row(&self, under: Under) -> Option<&Candidate> {
+        let found = self.found(under).map(|number| &self.designs[number]);
+        let kept = self.given.iter().filter(|given| given.keeps(under));
+        let given = kept.min_by(|a, b| a.known().total_cmp(&b.known()));
+        let is_better = |given: &&Candidate| found.is_none_or(|found| given.known() < found.known());
+        given.filter(is_better).or(found)
+    }
+
     /// The best designs under each bound, the dampers in their order under each.
     pub fn rows(&self, sweep: Sweep) -> Vec<Row<'_>> {
-        let row = |bound: f64, damper: usize| {
-            let kept = |design: &&Candidate| design.damper == damper && design.excess(sweep, bound) == 0.0;
-            let found = self.row_index(damper, sweep, bound).map(|number| &self.designs[number]);
-            let given = self.given.iter().filter(kept).min_by(|a, b| a.known().total_cmp(&b.known()));
-            let is_better = |given: &&Candidate| found.is_none_or(|found| given.known() < found.known());
-            let design = given.filter(is_better).or(found);
-            Row { sweep, bound, damper, design }
-        };
+        let row = |under: Under| (under, self.row(under));
         let dampers = 0..self.plan.dampers.len();
         let bounds = self.plan.values(sweep).into_iter();
-        bounds.flat_map(|bound| dampers.clone().map(move |damper| row(bound, damper))).collect()
+        let all = bounds.flat_map(|bound| dampers.clone().map(move |damper| Under { damper, sweep, bound }));
+        all.map(row).collect()
     }
 
     /// The designs that no other dominates in all of E1max, stroke, force and k2.
@@ -116,7 +95,6 @@ impl Fronts {
         front
     }
 
-    /// The name of a damper.
     pub fn name(&self, damper: usize) -> &str {
         self.plan.dampers.get(damper).map_or("", |(name, _)| name)
     }
@@ -129,44 +107,34 @@ impl Fronts {
 
     /// Certifies the designs that are furthest below the first damper under the same bound, each value once.
     pub(super) fn certify(&self) -> Result<Vec<Certified>, Error> {
-        let mut gains: Vec<(f64, Option<f64>, Row, &Candidate)> = Vec::new();
+        let mut gains: Vec<(f64, Under, &Candidate)> = Vec::new();
         let rows = self.plan.sweeps().into_iter().flat_map(|sweep| self.rows(sweep));
-        for row in rows.filter(|row| row.damper > 0) {
+        for (under, design) in rows.filter(|(under, _)| under.damper > 0) {
             let strikes = |design: &&Candidate| design.force > 0.0 && design.verdict != GIVEN;
-            let Some(design) = row.design.filter(strikes) else { continue };
-            let reference = self.reference(&row);
-            let share = reference.map_or(0.0, |reference| design.e1_max / reference);
-            if share < 1.0 - SAME && gains.iter().all(|(.., other)| !other.is_like(design)) {
-                gains.push((share, reference, row, design));
+            let Some(design) = design.filter(strikes) else { continue };
+            let share = self.reference(under).map_or(0.0, |reference| design.e1_max / reference);
+            let is_like = |other: &Candidate| {
+                other.damper == design.damper && (other.e1_max / design.e1_max - 1.0).abs() < SAME
+            };
+            if share < 1.0 - SAME && gains.iter().all(|(.., other)| !is_like(other)) {
+                gains.push((share, under, design));
             }
         }
         gains.sort_by(|a, b| a.0.total_cmp(&b.0));
         gains.truncate(self.plan.said.certificates);
-        let certified = |(_, reference, row, design): &(f64, Option<f64>, Row, &Candidate)| {
+        let certified = |(_, under, design): &(f64, Under, &Candidate)| {
             let (_, study) = &self.plan.dampers[design.damper];
-            let study = certifiable(study, self.plan.said.samples, &design.at)?;
-            let Row { sweep, bound, .. } = *row;
-            let (reference, design) = (*reference, Candidate::clone(design));
-            let file = format!("certificate-{}-{bound}.json", sweep.name());
-            let certificate = certify(&study);
-            Some(certificate.map(|certificate| Certified {
-                sweep,
-                bound,
-                design,
-                reference,
-                file,
-                certificate,
-            }))
+            let study = certifiable(study, self.plan.said.samples, &design.at);
+            let Some(certificate) = study.map(|study| certify(&study)).transpose()? else { return Ok(None) };
+            let file = format!("certificate-{}-{}.json", under.sweep.name(), under.bound);
+            Ok(Some(Certified { under: *under, design: Candidate::clone(design), file, certificate }))
         };
-        let certified: Vec<Option<Result<Certified, Error>>> = gains.par_iter().map(certified).collect();
-        certified.into_iter().flatten().collect()
+        Ok(of_each(&gains, &Silent, certified)?.into_iter().flatten().collect())
     }
 
-    /// The least E1max of the first damper under the bound of a row, J.
-    pub fn reference(&self, row: &Row) -> Option<f64> {
-        let rows = self.rows(row.sweep);
-        let own = rows.iter().find(|other| other.damper == 0 && other.bound == row.bound);
-        Some(own?.design?.e1_max)
+    /// The least E1max of the first damper under a bound, J.
+    pub fn reference(&self, under: Under) -> Option<f64> {
+        Some(self.row(Under { damper: 0, ..under })?.e1_max)
     }
 
     /// The parameters that tables have columns for: the paper's, what else a study varies, and what a known design has otherwise than its
@@ -187,44 +155,31 @@ impl Fronts {
     pub fn table(&self, sweep: Sweep) -> Table {
         let parameters = self.parameters();
         let (bound, designs) = (format!("{}_most", sweep.name()), Candidate::names(&parameters));
-        let needs = NEEDS.map(Measure::name);
-        let mut table = columns::table(&[&[&*bound, "damper"], &*designs, &needs, &["verdict"]].concat());
-        for Row { bound, damper, design, .. } in self.rows(sweep) {
-            let cells = match design {
-                None => [vec![Cell::Empty; designs.len() + needs.len()], cells!["none keeps it"]],
-                Some(design) => {
-                    let need = |measure| Cell::from(design.needs.map(|needs| needs.value(measure)));
-                    let needs = NEEDS.map(need).into_iter().chain([design.verdict.into()]);
-                    [design.cells(&parameters), needs.collect()]
-                }
+        let names = [&[&*bound, "damper"], &*designs, &NEEDS.map(Measure::name), &["verdict"]].concat();
+        let row = |(under, design): Row| {
+            let first = cells![under.bound, self.name(under.damper)];
+            let Some(design) = design else {
+                let empty = vec![Cell::Empty; designs.len() + NEEDS.len()];
+                return [first, empty, cells!["none keeps it"]].concat();
             };
-            table.push([cells![bound, self.name(damper)], cells.concat()].concat());
-        }
-        table
+            let needs = NEEDS.map(|measure| design.needs.map(|needs| needs.value(measure)).into());
+            [first, design.cells(&parameters), needs.into(), cells![design.verdict]].concat()
+        };
+        columns::table(&names).with(self.rows(sweep).into_iter().map(row))
     }
 
     /// The table of [`Self::front`].
     pub fn front_table(&self) -> Table {
         let parameters = self.parameters();
-        let mut table =
-            columns::table(&[&["damper"], &*Candidate::names(&parameters), &["verdict"]].concat());
-        for design in self.front() {
-            let name = cells![self.name(design.damper)];
-            table.push([name, design.cells(&parameters), cells![design.verdict]].concat());
-        }
-        table
+        let names = [&["damper"], &*Candidate::names(&parameters), &["verdict"]].concat();
+        let row = |design: &Candidate| {
+            [cells![self.name(design.damper)], design.cells(&parameters), cells![design.verdict]].concat()
+        };
+        columns::table(&names).with(self.front().into_iter().map(row))
     }
 }
 
-/// A bound in words: `k2 at most 400 N/m`.
-pub(super) fn at_most(sweep: Sweep, bound: impl Display) -> String {
-    format!("{} at most {bound} {}", sweep.name(), sweep.unit())
-}
-
 /// The certificate of a design, made again.
-///
-/// # Errors
-/// The file cannot be read.
 pub(super) fn again(place: &Path, name: &str) -> Result<Made, Error> {
     let said = json(place, name)?;
     let resolved = Resolved::read(place)?;

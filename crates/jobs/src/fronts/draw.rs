@@ -37,9 +37,9 @@ fn of_study(damper: usize) -> Mark {
 pub(super) fn sweep(fronts: &Fronts, sweep: Sweep) -> Drawing {
     let rows = fronts.rows(sweep);
     let line = |damper: usize| {
-        let own = rows.iter().filter(|row| row.damper == damper);
-        let energy = |row: &Row| row.design.map_or(f64::NAN, |design| design.e1_max);
-        own.map(|row| (row.bound, energy(row))).collect::<Vec<(f64, f64)>>()
+        let own = rows.iter().filter(|(under, _)| under.damper == damper);
+        let point = |(under, design): &Row| (under.bound, design.map_or(f64::NAN, |design| design.e1_max));
+        own.map(point).collect::<Vec<(f64, f64)>>()
     };
     let mut layers = Vec::new();
     for damper in 0..fronts.plan.dampers.len() {
@@ -48,9 +48,9 @@ pub(super) fn sweep(fronts: &Fronts, sweep: Sweep) -> Drawing {
         layers.push(Layer::Steps { points: line(damper), stroke: Stroke::solid(mark.colour) });
         layers.push(Layer::Marks { points: line(damper), mark });
     }
-    let rising = |row: &Row| Some((row.bound, row.design.filter(|design| design.rises())?.e1_max));
+    let rising = |(under, design): &Row| Some((under.bound, design.filter(|design| design.rises())?.e1_max));
     let risen: Vec<(f64, f64)> = rows.iter().filter_map(rising).collect();
-    let right = 1.03 * rows.last().map_or(1.0, |row| row.bound);
+    let right = 1.03 * rows.last().map_or(1.0, |(under, _)| under.bound);
     let mut legend = legend(fronts, |design| design.reached(sweep) <= right);
     if !risen.is_empty() {
         let words = format!("rises by more than 1 % on {} frequencies", fronts.plan.check());
@@ -58,7 +58,8 @@ pub(super) fn sweep(fronts: &Fronts, sweep: Sweep) -> Drawing {
     }
     layers.push(Layer::Marks { points: risen, mark: RISES });
     layers.extend(given(fronts, sweep));
-    let energies = rows.iter().filter_map(|row| row.design).chain(&fronts.given).map(|design| design.e1_max);
+    let energies =
+        rows.iter().filter_map(|(_, design)| *design).chain(&fronts.given).map(|design| design.e1_max);
     let label = BOUNDED.iter().find(|(of, ..)| *of == sweep).map_or("", |(.., label)| label);
     let x = Axis::linear(label, (0.0, right));
     let chart = Chart::of(x, Axis::from_zero(ENERGY, energies), layers, 165.0);

@@ -1,7 +1,7 @@
 //! The page of `fronts`: the answer in words, whose numbers are those of the tables.
 
-use super::candidate::{Candidate, SAME};
-use super::designs::{Certified, Fronts, NEEDS, Row, at_most};
+use super::candidate::{Candidate, SAME, Under, at_most};
+use super::designs::{Certified, Fronts, NEEDS};
 use super::draw;
 use crate::certify::Verdict;
 use crate::{Error, pages};
@@ -9,12 +9,9 @@ use retune_model::{Design, Measure, Parameter};
 use retune_report::document::{Block, Document};
 use retune_report::table::{Shown, Table};
 use retune_store::Directory;
-use retune_study::{Sweep, design_words, rounded, short};
+use retune_study::{Sweep, design_words, joined, rounded, short};
 
 /// Writes the page in both forms, and its figures.
-///
-/// # Errors
-/// A file cannot be written.
 pub(super) fn write(fronts: &Fronts, directory: &Directory) -> Result<(), Error> {
     let names: Vec<&str> = fronts.plan.dampers.iter().map(|(name, _)| name.as_str()).collect();
     let mut sections = Vec::new();
@@ -106,8 +103,8 @@ fn table(fronts: &Fronts, sweep: Sweep) -> Block {
     columns.extend(parameters.iter().map(|parameter| table.show(parameter.symbol(), four).or("none")));
     columns.push(table.exact("verdict"));
     let (head, mut rows) = table.shown(&columns);
-    for (cells, row) in rows.iter_mut().zip(fronts.rows(sweep)) {
-        match row.design {
+    for (cells, (_, design)) in rows.iter_mut().zip(fronts.rows(sweep)) {
+        match design {
             None => {
                 cells.truncate(2);
                 cells.push("none that was found keeps it".to_owned());
@@ -122,7 +119,7 @@ fn table(fronts: &Fronts, sweep: Sweep) -> Block {
 
 /// What the designs of [`table`] need, beside no damper.
 fn needs(fronts: &Fronts, sweep: Sweep) -> Block {
-    let found = fronts.rows(sweep).into_iter().map(|row| row.design.is_some());
+    let found = fronts.rows(sweep).into_iter().map(|(_, design)| design.is_some());
     let table = fronts.table(sweep).only(found);
     let mut columns = along(&table, sweep);
     columns.push(table.show(Measure::Stroke.name(), metre));
@@ -141,10 +138,9 @@ fn needs(fronts: &Fronts, sweep: Sweep) -> Block {
 /// The reasons of verdicts other than robust in [`table`], each once.
 fn reasons(fronts: &Fronts, sweep: Sweep) -> Option<Block> {
     let mut said: Vec<(String, Vec<String>)> = Vec::new();
-    for Row { bound, damper, design, .. } in fronts.rows(sweep) {
-        let Some(design) = design.filter(|design| !design.reason.is_empty() && !design.is_robust()) else {
-            continue;
-        };
+    for (Under { bound, damper, .. }, design) in fronts.rows(sweep) {
+        let has = |design: &&Candidate| !design.reason.is_empty() && design.verdict != Verdict::Robust.name();
+        let Some(design) = design.filter(has) else { continue };
         let reason = format!("{} ({}): {}", fronts.name(damper), words(fronts, design), design.reason);
         match said.iter_mut().find(|(known, _)| *known == reason) {
             Some((_, bounds)) => bounds.push(bound.to_string()),
@@ -178,59 +174,61 @@ pub(super) fn answer(fronts: &Fronts) -> Vec<String> {
 
 /// A damper beside the first along a bound.
 fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
-    let (name, first) = (fronts.name(damper), fronts.name(0));
-    let what = sweep.name();
-    let rows: Vec<Row> = fronts.rows(sweep).into_iter().filter(|row| row.damper == damper).collect();
-    let share = |row: &Row| Some(row.design?.e1_max / fronts.reference(row)?);
-    let best = rows
-        .iter()
-        .filter_map(|row| Some((share(row)?, row)))
-        .min_by(|(one, _), (other, _)| one.total_cmp(other));
-    let bounds = |which: &dyn Fn(&Row) -> bool| {
-        let bounds = rows.iter().filter(|row| which(row)).map(|row| row.bound.to_string());
-        bounds.collect::<Vec<_>>().join(", ")
-    };
-    let of = |which: fn(&Candidate) -> bool| bounds(&|row| row.design.is_some_and(which));
-    let mut words = match best {
-        Some((gain, Row { bound, design: Some(design), .. })) if gain < 1.0 - SAME => format!(
-            "{}: the best {name} has {} J, the best {first} {} J. There its advantage is largest; it is better by more than 1 % for {}.",
-            at_most(sweep, bound),
-            joule(design.e1_max),
-            joule(design.e1_max / gain),
-            at_most(sweep, bounds(&|row| share(row).is_some_and(|share| share < 1.0 - SAME)))
-        ),
+    let (name, first, what) = (fronts.name(damper), fronts.name(0), sweep.name());
+    let rows = fronts.rows(sweep).into_iter().filter(|(under, _)| under.damper == damper);
+    let rows: Vec<(f64, Option<&Candidate>, Option<f64>)> =
+        rows.map(|(under, design)| (under.bound, design, fronts.reference(under))).collect();
+    let gains = rows.iter().filter_map(|(bound, design, reference)| {
+        let (design, reference) = ((*design)?, (*reference)?);
+        Some((design.e1_max / reference, bound, design))
+    });
+    let gains: Vec<(f64, &f64, &Candidate)> = gains.collect();
+    let listed = |bounds: Vec<&f64>| joined(&bounds, ", ");
+    let mut words = match gains.iter().min_by(|(one, ..), (other, ..)| one.total_cmp(other)) {
+        Some((gain, bound, design)) if *gain < 1.0 - SAME => {
+            let better = gains.iter().filter(|(share, ..)| *share < 1.0 - SAME);
+            format!(
+                "{}: the best {name} has {} J, the best {first} {} J. There its advantage is largest; it is better by more than 1 % for {}.",
+                at_most(sweep, bound),
+                joule(design.e1_max),
+                joule(design.e1_max / gain),
+                at_most(sweep, listed(better.map(|(_, bound, _)| *bound).collect()))
+            )
+        }
         _ => format!("{what}: under no bound is the {name} better than the {first} by more than 1 %."),
     };
-    let mut remark = |bounds: String, before: &str, after: &str| {
+    let mut remark = |which: &dyn Fn(&Candidate, Option<f64>) -> bool, before: &str, after: &str| {
+        let own = rows.iter().filter(|(_, design, none)| design.is_some_and(|design| which(design, *none)));
+        let bounds = listed(own.map(|(bound, ..)| bound).collect());
         if !bounds.is_empty() {
             words += &format!(" {before} {}{after}", at_most(sweep, bounds));
         }
     };
-    let alone = bounds(&|row| row.design.is_some() && fronts.reference(row).is_none());
-    remark(alone, &format!("Only the {name} keeps"), ".");
+    remark(&|_, reference| reference.is_none(), &format!("Only the {name} keeps"), ".");
+    let single = |design: &Candidate, _| design.verdict == Verdict::SingleChaoticRealisation.name();
     let after = " it is a single chaotic realisation: practically equal designs have much more or less.";
-    remark(of(|design| design.verdict == Verdict::SingleChaoticRealisation.name()), "For", after);
+    remark(&single, "For", after);
     let after =
         " other starts than rest lead it to much more, and no design as good was found that is free of this.";
-    remark(of(Candidate::is_unsafe), "For", after);
+    remark(&|design, _| design.is_unsafe(), "For", after);
     let after = format!(" the best {name} touches nothing: it has become a TMD.");
-    remark(of(|design| design.force == 0.0), "For", &after);
+    remark(&|design, _| design.force == 0.0, "For", &after);
     words
 }
 
 /// A certified design in words.
-fn certificate(fronts: &Fronts, one: &Certified) -> String {
-    let Certified { sweep, bound, design, reference, certificate, .. } = one;
-    let reference = reference.map_or("none".to_owned(), |reference| format!("{} J", joule(reference)));
+fn certificate(fronts: &Fronts, Certified { under, design, certificate, .. }: &Certified) -> String {
+    let reference = fronts.reference(*under);
     let lines: Vec<String> =
         certificate.short().to_string().lines().map(|line| line.trim().to_owned()).collect();
     format!(
-        "{}, {}: {} with {} J (best {} under the same bound: {reference}). {}",
+        "{}, {}: {} with {} J (best {} under the same bound: {}). {}",
         fronts.name(design.damper),
-        at_most(*sweep, bound),
+        at_most(under.sweep, under.bound),
         words(fronts, design),
         joule(design.e1_max),
         fronts.name(0),
+        reference.map_or("none".to_owned(), |reference| format!("{} J", joule(reference))),
         lines.join("; "),
     )
 }

@@ -2,51 +2,44 @@
 //!
 //! The best are looked at once more on the finest samples, and it is by these that designs are compared.
 
-use super::candidate::{CONTINUED, Candidate};
+use super::candidate::{CONTINUED, Candidate, Under, at_most, by_excess};
 use super::descents::Task;
-use super::designs::{Fronts, GIVEN, at_most};
-use super::refinement::Under;
+use super::designs::{Fronts, GIVEN};
 use crate::certify::judge;
 use crate::needs::Largest;
 use crate::resampled::{finer, worst};
+use crate::rows::of_each;
 use crate::searches::Searches;
 use crate::tune::ends::Ends;
-use crate::{Error, Observer};
-use rayon::prelude::*;
+use crate::{Error, Silent};
 use retune_model::{Design, Measure, PerVariable, Scene};
 use retune_optim::Limit;
-use retune_study::{self as study, FrontsPlan, Study, Sweep, clipped};
+use retune_study::{FrontsPlan, Optimize, Study, Sweep, bounded, clipped};
 
 /// A search keeps this much below a limit, for between its samples a stroke or a force may be a little larger.
 const ROOM: f64 = 0.99;
 
-/// Makes all searches.
-///
-/// # Errors
-/// A study cannot be searched under a bound, or results cannot be written.
-pub(super) fn search(plan: FrontsPlan, searches: &Searches, watch: &dyn Observer) -> Result<Fronts, Error> {
-    let mut fronts = Fronts::new(plan);
-    let mut tasks = Vec::new();
-    for damper in 0..fronts.plan.dampers.len() {
+pub(super) fn search(plan: FrontsPlan, searches: &Searches) -> Result<Fronts, Error> {
+    let (designs, given, certified) = (Vec::new(), Vec::new(), Vec::new());
+    let mut fronts = Fronts { plan, designs, given, none: None, certified };
+    let count = fronts.plan.dampers.len();
+    for damper in 0..count {
         let (_, study) = &fronts.plan.dampers[damper];
-        if let Some(place) = study.scene.damper {
-            let at = Design::of_varied(&place, study.varied());
-            fronts.given.extend(fronts.candidate(damper, at, GIVEN));
-        }
+        let at = study.scene.damper.map(|place| Design::of_varied(&place, study.varied()));
+        let given = at.and_then(|at| fronts.candidate(damper, at));
+        fronts.given.extend(given.map(|given| Candidate { verdict: GIVEN, ..given }));
     }
     for (damper, at) in fronts.plan.designs.clone() {
-        fronts.designs.extend(fronts.candidate(damper, at, CONTINUED));
+        fronts.designs.extend(fronts.candidate(damper, at));
     }
-    for damper in 0..fronts.plan.dampers.len() {
-        tasks.extend(fronts.tune(damper, searches, watch)?);
+    let mut tasks = Vec::new();
+    for damper in 0..count {
+        tasks.extend(fronts.tune(damper, searches)?);
     }
-    fronts.go_down(tasks, searches, watch)?;
+    fronts.go_down(tasks, searches)?;
     fronts.judge()?;
-    fronts.none = fronts
-        .plan
-        .dampers
-        .last()
-        .and_then(|(_, study)| Largest::of(study, &Scene { damper: None, ..study.scene }));
+    let bare = |(_, study): &(String, Study)| Largest::of(study, &Scene { damper: None, ..study.scene });
+    fronts.none = fronts.plan.dampers.last().and_then(bare);
     fronts.certified = fronts.certify()?;
     Ok(fronts)
 }
@@ -54,24 +47,23 @@ pub(super) fn search(plan: FrontsPlan, searches: &Searches, watch: &dyn Observer
 impl Fronts {
     /// The searches of a damper under all bounds, side by side; the descents that begin where they came to. A steady response is exact over
     /// the whole band: its searches need none.
-    fn tune(&mut self, damper: usize, searches: &Searches, watch: &dyn Observer) -> Result<Vec<Task>, Error> {
+    fn tune(&mut self, damper: usize, searches: &Searches) -> Result<Vec<Task>, Error> {
         let bounds: Vec<Under> = self.all().into_iter().filter(|under| under.damper == damper).collect();
-        let study = |under: &Under| -> Result<(Study, String), Error> {
-            let Under { damper, sweep, bound } = *under;
-            Ok((self.under(*under, self.starts(*under))?, format!("{damper} {} {bound}", sweep.name())))
-        };
-        let all = searches.ends_of_all(&bounds.iter().map(study).collect::<Result<Vec<_>, _>>()?)?;
+        let study = |under: &Under| Ok((self.under(*under, self.starts(*under))?, under.name()));
+        let all = searches.ends_of_all(&bounds.iter().map(study).collect::<Result<Vec<_>, Error>>()?)?;
         let mut tasks = Vec::new();
         for (under, Ends { best, value, places }) in bounds.into_iter().zip(all) {
-            let Under { sweep, bound, .. } = under;
             let found =
                 if value.is_nan() { "nothing that keeps it".to_owned() } else { format!("{value:.2} J") };
-            watch.log(&format!("{}, {}: {found}", self.name(damper), at_most(sweep, bound)))?;
-            self.designs.extend(self.candidate(damper, best, CONTINUED));
-            if self.is_steady(damper) {
-                continue;
+            searches.watch.log(&format!(
+                "{}, {}: {found}",
+                self.name(damper),
+                at_most(under.sweep, under.bound)
+            ))?;
+            self.designs.extend(self.candidate(damper, best));
+            if !self.is_steady(damper) {
+                tasks.extend([best].iter().chain(&places).flat_map(|at| self.descents(at, under)));
             }
-            tasks.extend([best].iter().chain(&places).flat_map(|at| self.descents(at, under)));
         }
         Ok(tasks)
     }
@@ -82,49 +74,50 @@ impl Fronts {
         self.bounded(Under { bound: room * under.bound, ..under }, starts)
     }
 
+    /// What its search varies, and within which bounds; none where there is no such search.
+    pub(super) fn optimize(&self, under: Under) -> Option<Optimize> {
+        self.under(under, Vec::new()).ok()?.optimize
+    }
+
     /// The study of a damper under a bound.
-    fn bounded(&self, under: Under, starts: Vec<PerVariable<f64>>) -> Result<Study, Error> {
-        let Under { damper, sweep, bound } = under;
+    fn bounded(
+        &self,
+        Under { damper, sweep, bound }: Under,
+        starts: Vec<PerVariable<f64>>,
+    ) -> Result<Study, Error> {
         let (_, study) = &self.plan.dampers[damper];
-        let refuse = Error::rule(study);
-        study::bounded(study, sweep, bound, starts).map_err(refuse)
+        bounded(study, sweep, bound, starts).map_err(Error::rule(study))
     }
 
     /// The designs at which a search starts: the best of the dampers before it under the bound.
     fn starts(&self, under: Under) -> Vec<PerVariable<f64>> {
-        let Ok(study) = self.under(under, Vec::new()) else { return Vec::new() };
-        let Some(optimize) = &study.optimize else { return Vec::new() };
-        let best = (0..under.damper).filter_map(|other| self.best(Under { damper: other, ..under }));
-        best.map(|design| clipped(&design.at, optimize)).collect()
+        let Some(optimize) = self.optimize(under) else { return Vec::new() };
+        let best = (0..under.damper).filter_map(|damper| self.best(Under { damper, ..under }));
+        best.map(|design| clipped(&design.at, &optimize)).collect()
+    }
+
+    /// The best design of a damper under a bound, or that which is beyond it by least.
+    pub(super) fn best(&self, under: Under) -> Option<Candidate> {
+        let own = self.designs.iter().filter(|design| design.damper == under.damper);
+        own.min_by(|a, b| by_excess(a, b, under)).cloned()
     }
 
     /// A design on the samples of the study of fronts; none where it cannot be run.
-    pub(super) fn candidate(&self, damper: usize, at: Design, verdict: &'static str) -> Option<Candidate> {
+    pub(super) fn candidate(&self, damper: usize, at: Design) -> Option<Candidate> {
         let (_, study) = self.plan.dampers.get(damper)?;
         let found = worst(&finer(study, self.plan.said.samples, &at)?)?;
         let [stroke, force] =
             [Measure::Stroke, Measure::ContactForce].map(|of| found.reached.get(Limit::Of(of)));
-        Some(Candidate {
-            damper,
-            at,
-            e1_max: found.value,
-            checked: None,
-            stroke,
-            force,
-            verdict,
-            reason: String::new(),
-            needs: None,
-        })
+        let (e1_max, checked, needs) = (found.value, None, None);
+        let (verdict, reason) = (CONTINUED, String::new());
+        Some(Candidate { damper, at, e1_max, checked, stroke, force, verdict, reason, needs })
     }
 
     /// Looks at the best designs under each bound once more, on the finest samples, and certifies those that have no verdict, until the
     /// best by both are known.
     fn judge(&mut self) -> Result<(), Error> {
         loop {
-            let rows = self
-                .all()
-                .into_iter()
-                .filter_map(|under| Some((self.row_index(under.damper, under.sweep, under.bound)?, under)));
+            let rows = self.all().into_iter().filter_map(|under| Some((self.found(under)?, under)));
             let open = |design: &Candidate| design.checked.is_none() || design.verdict == CONTINUED;
             let mut open: Vec<(usize, Under)> = rows.filter(|&(at, _)| open(&self.designs[at])).collect();
             open.sort_by_key(|(at, _)| *at);
@@ -132,10 +125,9 @@ impl Fronts {
             if open.is_empty() {
                 return Ok(());
             }
-            let judged = open.par_iter().map(|&(at, under)| Ok((at, self.judged(&self.designs[at], under)?)));
-            for (at, design) in judged.collect::<Result<Vec<_>, Error>>()? {
-                self.designs[at] = design;
-            }
+            let judged =
+                of_each(&open, &Silent, |&(at, under)| Ok((at, self.judged(&self.designs[at], under)?)))?;
+            judged.into_iter().for_each(|(at, design)| self.designs[at] = design);
         }
     }
 

@@ -1,36 +1,24 @@
-//! The page of `losses`, which begins with its answer. Every number on it is one of the table beside it.
+//! The page of `losses` with its figures, which begins with its answer. Every number on it is one of the table beside it.
 
-use super::compared::{FILE, Losses, Point, Tuning};
-use super::draw;
-use crate::{Error, pages};
+use super::points::{FILE, Losses, Point, Tuning};
+use crate::Error;
+use crate::pages::{self, figure};
 use retune_model::Parameter;
+use retune_report::colour::{BLACK, BLUE, GREEN, ORANGE, PURPLE, VERMILION};
 use retune_report::document::{Block, Document};
+use retune_report::{Axis, Chart, Dash, Drawing, Key, Layer, Mark, Scale, Shape, Sheet, Stroke};
 use retune_store::Directory;
 use retune_study::{design_words, rounded};
 
 /// Writes the page and its figures; returns the answer in words.
-///
-/// # Errors
-/// A file cannot be written.
 pub(super) fn write(losses: &Losses, directory: &Directory) -> Result<String, Error> {
     let answer = answer(losses);
-    let quantity = losses.study.quantity();
-    let values = vec![
-        Block::figure(
-            "losses.svg",
-            draw::values(losses),
-            format!("Worst {} over the restitution", quantity.name()),
-        ),
-        values(losses),
-    ];
-    let tuned = vec![
-        Block::figure("dashpot.svg", draw::dashpot(losses), "The re-tuned dashpot over the restitution"),
-        designs(losses),
-    ];
-    let energy = vec![
-        Block::figure("powers.svg", draw::powers(losses), "Mean powers lost in the worst run of each damper"),
-        Block::words(ENERGY),
-    ];
+    let caption = format!("Worst {} over the restitution", losses.study.quantity().name());
+    let values = vec![Block::figure("losses.svg", draw_values(losses, &caption), caption), values(losses)];
+    let caption = "The re-tuned dashpot over the restitution";
+    let tuned = vec![Block::figure("dashpot.svg", draw_dashpot(losses), caption), designs(losses)];
+    let caption = "Mean powers lost in the worst run of each damper";
+    let energy = vec![Block::figure("powers.svg", draw_powers(losses), caption), Block::words(ENERGY)];
     let page = Document {
         title: "Contacts that lose energy".to_owned(),
         command: "retune losses",
@@ -53,12 +41,9 @@ const ENERGY: &str = "At the frequency that is worst for the damper at each rest
 
 /// The answer, a sentence for each statement.
 fn answer(losses: &Losses) -> Vec<String> {
-    let quantity = losses.study.quantity();
-    let value = |point: &Point| format!("{} {}", rounded(point.worth.value, 4), quantity.unit());
-    let ends = |tuning: Tuning| {
-        let all: Vec<&Point> = losses.of(tuning).collect();
-        Some((*all.first()?, *all.last()?))
-    };
+    let unit = losses.study.quantity().unit();
+    let value = |point: &Point| format!("{} {unit}", rounded(point.value, 4));
+    let ends = |tuning: Tuning| losses.of(tuning).next().zip(losses.of(tuning).last());
     let from_to = |tuning: Tuning, what: &str| {
         let (first, last) = ends(tuning)?;
         let (high, low) = (first.restitution, last.restitution);
@@ -74,47 +59,112 @@ fn answer(losses: &Losses) -> Vec<String> {
             dashpot(last)
         )
     });
-    let most = losses.of(Tuning::Hedged).max_by(|a, b| a.worth.value.total_cmp(&b.worth.value));
+    let most = losses.of(Tuning::Hedged).max_by(|a, b| a.value.total_cmp(&b.value));
     let hedged = most.map(|most| {
-        format!(
-            "One damper for all e ({}) has at most {}, at e = {}.",
-            design_words(&most.design, 4),
-            value(most),
-            most.restitution
-        )
+        let (words, value, e) = (design_words(&most.design, 4), value(most), most.restitution);
+        format!("One damper for all e ({words}) has at most {value}, at e = {e}.")
     });
-    [
-        from_to(Tuning::Lossless, "A damper tuned as if contacts lost nothing has the worst"),
-        anew,
-        hedged,
-        from_to(Tuning::Paper, "The paper's damper"),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    let lossless = from_to(Tuning::Lossless, "A damper tuned as if contacts lost nothing has the worst");
+    let paper = from_to(Tuning::Paper, "The paper's damper");
+    [lossless, anew, hedged, paper].into_iter().flatten().collect()
 }
 
-/// The values as a table.
 fn values(losses: &Losses) -> Block {
     let quantity = losses.study.quantity();
-    let head = std::iter::once("e".to_owned()).chain(Tuning::ALL.map(|tuning| tuning.name().to_owned()));
+    let head = ["e"].into_iter().chain(Tuning::ALL.map(Tuning::name));
     let rows = losses.of(Tuning::Anew).map(|point| {
         let of = |tuning: Tuning| {
             let same = losses.of(tuning).find(|other| other.restitution == point.restitution);
-            same.map_or(String::new(), |same| rounded(same.worth.value, 4))
+            same.map_or(String::new(), |same| rounded(same.value, 4))
         };
         std::iter::once(point.restitution.to_string()).chain(Tuning::ALL.map(of)).collect()
     });
-    Block::Table(format!("Worst {}, {}", quantity.name(), quantity.unit()), head.collect(), rows.collect())
+    Block::table(format!("Worst {}, {}", quantity.name(), quantity.unit()), head, rows.collect())
 }
 
-/// The re-tuned designs as a table.
 fn designs(losses: &Losses) -> Block {
     let head = ["e", "k2, N/m", "c2, N·s/m", "D, m", "C, m", "worst at, rad/s", "impacts at up to, m/s"];
-    let rows = losses.of(Tuning::Anew).map(|Point { restitution, design, worth, .. }| {
+    let rows = losses.of(Tuning::Anew).map(|Point { restitution, design, omega, impact_speed, .. }| {
         let numbers = Parameter::PAPER.map(|parameter| rounded(design.get(parameter), 4));
-        let last = [rounded(worth.omega, 4), rounded(worth.impact_speed, 3)];
+        let last = [rounded(*omega, 4), rounded(*impact_speed, 3)];
         std::iter::once(restitution.to_string()).chain(numbers).chain(last).collect()
     });
-    Block::Table("Re-tuned for each e".to_owned(), head.map(str::to_owned).into(), rows.collect())
+    Block::table("Re-tuned for each e", head, rows.collect())
+}
+
+const fn line(tuning: Tuning) -> Stroke {
+    match tuning {
+        Tuning::Paper => Stroke::new(PURPLE, 1.1, Dash::DashDot),
+        Tuning::Lossless => Stroke::new(VERMILION, 1.3, Dash::Long),
+        Tuning::Hedged => Stroke::solid(GREEN),
+        Tuning::Anew => Stroke::new(BLUE, 1.3, Dash::Solid),
+    }
+}
+
+const ANEW: Mark = Mark::new(Shape::Disc, BLUE, 4.0);
+
+/// Points of a damper, by its restitution.
+fn points(losses: &Losses, tuning: Tuning, value: impl Fn(&Point) -> f64) -> Vec<(f64, f64)> {
+    losses.of(tuning).map(|point| (point.restitution, value(point))).collect()
+}
+
+fn chart(losses: &Losses, y: Axis, layers: Vec<Layer>, height: f64) -> Chart {
+    let all = || losses.points.iter().map(|(_, point)| point.restitution);
+    let [low, high] = [f64::min, f64::max].map(|of| all().reduce(of).unwrap_or(1.0));
+    Chart::of(Axis::new("restitution e", Scale::Linear, (low, high)), y, layers, height)
+}
+
+fn draw(
+    losses: &Losses,
+    title: &str,
+    description: &str,
+    legend: Vec<(Key, String)>,
+    charts: Vec<Chart>,
+) -> Drawing {
+    let description = description.to_owned();
+    figure(Sheet { description, legend, ..Sheet::of(title, charts) }, Some(&losses.study))
+}
+
+/// The value of each damper over the restitution.
+fn draw_values(losses: &Losses, description: &str) -> Drawing {
+    let quantity = losses.study.quantity();
+    let all = losses.points.iter().map(|(_, point)| point.value);
+    let y = Axis::around(format!("worst {}, {}", quantity.name(), quantity.unit()), Scale::Log, all);
+    let layers =
+        Tuning::ALL.map(|tuning| Layer::line(points(losses, tuning, |point| point.value), line(tuning)));
+    let legend = Tuning::ALL.map(|tuning| (Key::Line(line(tuning)), tuning.name().to_owned()));
+    let charts = vec![chart(losses, y, layers.into(), 220.0)];
+    draw(losses, "Dampers whose contacts lose energy", description, legend.into(), charts)
+}
+
+/// The dashpot of the re-tuned damper over the restitution.
+fn draw_dashpot(losses: &Losses) -> Drawing {
+    let points = points(losses, Tuning::Anew, |point| point.design.get(Parameter::C2));
+    let values: Vec<f64> = points.iter().map(|(_, value)| *value).chain([0.0]).collect();
+    let stroke = line(Tuning::Anew);
+    let layers = vec![Layer::line(points.clone(), stroke), Layer::Marks { points, mark: ANEW }];
+    let charts = vec![chart(losses, Axis::fitting("c2, N·s/m", &values), layers, 175.0)];
+    let legend = vec![(Key::Marked(stroke, ANEW), Tuning::Anew.name().to_owned())];
+    let title = "The dashpot of the re-tuned damper";
+    draw(losses, title, title, legend, charts)
+}
+
+/// Where the energy of the worst run goes: a chart for each damper.
+fn draw_powers(losses: &Losses) -> Drawing {
+    let parts = [
+        ("dashpot of the structure", Stroke::new(BLACK, 1.1, Dash::Short)),
+        ("dashpot of the damper", Stroke::new(BLUE, 1.3, Dash::Solid)),
+        ("impacts", Stroke::new(ORANGE, 1.3, Dash::Long)),
+    ];
+    let all: Vec<f64> = losses.points.iter().flat_map(|(_, point)| point.powers).chain([0.0]).collect();
+    let y = Axis::fitting("mean power, W", &all);
+    let of = |tuning: Tuning| {
+        let layer =
+            |part: usize| Layer::line(points(losses, tuning, |point| point.powers[part]), parts[part].1);
+        let chart = chart(losses, y.clone(), (0..3).map(layer).collect(), 150.0);
+        Chart { title: tuning.name().to_owned(), ..chart }
+    };
+    let legend = parts.map(|(name, stroke)| (Key::Line(stroke), name.to_owned()));
+    let title = "Where the energy of the worst run goes";
+    draw(losses, title, title, legend.into(), Tuning::ALL.map(of).into())
 }

@@ -1,9 +1,10 @@
 //! Figure 7: three irregular motions and their regimes.
 
 use super::item::Item;
-use super::measures::{for_each, recorded, rounded};
+use super::measures::{ends, recorded, rounded};
 use super::plan::{Plan, stiffness};
 use crate::Error;
+use crate::rows::of_each;
 use retune_dynamics::regime::{
     ARRIVED, FALLING, FLOOR, LAMINAR, LAMINAR_PERIOD, LAMINAR_PHASE, LONGEST, MARGIN, MOSTLY, NEARING,
     PARTED, SAME,
@@ -14,10 +15,9 @@ use retune_report::colour::{BLACK, BLUE, GREEN};
 use retune_report::document::Verdict;
 use retune_report::table::{Cell, Table};
 use retune_report::{Axis, Chart, Dash, Key, Layer, Sheet, Stroke, cells};
-use retune_solver::{Sample, Window};
+use retune_solver::{Response, Sample, Window, simulate};
 use retune_study::joined;
 
-/// A case of the paper.
 struct Case {
     letter: &'static str,
     k1: f64,
@@ -27,27 +27,9 @@ struct Case {
 }
 
 const CASES: [Case; 3] = [
-    Case {
-        letter: "a",
-        k1: 3.95e4,
-        omega: 6.65,
-        paper: "Intermittency with unilateral impacts",
-        zone: Zone::PrimaryOnly,
-    },
-    Case {
-        letter: "b",
-        k1: 3.00e4,
-        omega: 6.10,
-        paper: "Transient chaos with unilateral impacts",
-        zone: Zone::PrimaryOnly,
-    },
-    Case {
-        letter: "c",
-        k1: 5.00e4,
-        omega: 7.10,
-        paper: "Chaotic motion with bilateral impacts",
-        zone: Zone::Bilateral,
-    },
+    Case::new("a", 3.95e4, 6.65, "Intermittency with unilateral impacts", Zone::PrimaryOnly),
+    Case::new("b", 3.00e4, 6.10, "Transient chaos with unilateral impacts", Zone::PrimaryOnly),
+    Case::new("c", 5.00e4, 7.10, "Chaotic motion with bilateral impacts", Zone::Bilateral),
 ];
 
 /// Distances from the frequency of a case at which the classification is repeated, rad/s.
@@ -58,6 +40,10 @@ const INTERVAL: f64 = 0.0025;
 const MORE: f64 = 100.0;
 
 impl Case {
+    const fn new(letter: &'static str, k1: f64, omega: f64, paper: &'static str, zone: Zone) -> Self {
+        Self { letter, k1, omega, paper, zone }
+    }
+
     /// Whether a regime agrees with the paper's name for it.
     fn agrees(&self, regime: &Regime) -> bool {
         match self.letter {
@@ -73,7 +59,6 @@ impl Case {
     }
 }
 
-/// Makes Figure 7.
 pub fn figure7(plan: &Plan) -> Result<Item, Error> {
     let mut item = Item::new(plan.made_by("Shown from t0 to T + 100 s of a run from rest; judged over 2000 periods, of which the last 1000 count as settled."));
     let mut table = Table::headed(
@@ -90,13 +75,10 @@ pub fn figure7(plan: &Plan) -> Result<Item, Error> {
             variants.extend(NEAR.map(|shift| (own, case.omega + shift)));
             variants.extend(plan.other_radii().map(|radius| (radius, case.omega)));
         }
-        let judged = for_each(&variants, |&(radius, omega)| {
-            use retune_model::Parameter::{K1, Omega, R};
-            let scene = plan.ssvi_with(&[(K1, case.k1), (Omega, omega), (R, radius)])?;
+        let judged = of_each(&variants, &*bar, |&(radius, omega)| {
+            let values = [(Parameter::K1, case.k1), (Parameter::Omega, omega), (Parameter::R, radius)];
             let stretch = Stretch { settle: 1000, observe: 1000 };
-            let regime = classify(&follow(&scene, None, stretch, &plan.settings())?);
-            bar.inc(1);
-            Ok(regime)
+            Ok(classify(&follow(&plan.ssvi_with(&values)?, None, stretch, &plan.settings())?))
         })?;
         for (&(radius, omega), regime) in variants.iter().zip(&judged) {
             table.push(cells![
@@ -110,7 +92,11 @@ pub fn figure7(plan: &Plan) -> Result<Item, Error> {
                 format!("{:.2}", regime.confidence),
             ]);
         }
-        state(case, &scene, &variants, &judged, plan, &mut item)?;
+        let others = variants.iter().zip(&judged).skip(1).filter(|(_, regime)| case.agrees(regime));
+        let others: Vec<String> =
+            others.map(|((radius, omega), _)| format!("R = {radius} m, ω = {omega:.2}")).collect();
+        let run = simulate(&scene, plan.window(), &plan.settings())?;
+        state(case, &run, &others, &judged[0], plan.window(), &mut item);
         item.notes.extend(creeping(case, &judged[0]));
     }
     bar.finish();
@@ -125,33 +111,14 @@ pub fn figure7(plan: &Plan) -> Result<Item, Error> {
 /// A slow approach to a periodic orbit can look like a transient: states its rate.
 fn creeping(case: &Case, regime: &Regime) -> Option<String> {
     let slow = regime.kind == Kind::Periodic && regime.transient.is_none() && regime.exponent.value < 0.0;
-    slow.then(|| {
-        format!(
-            "Case ({}): the motion from rest creeps towards {}, and its exponent is the rate of that: with {:.3} /s it takes {:.0} s to come e times nearer, so in a run of 100 s it need not look periodic; but neighbours do not part at any time, which transient chaos would need.",
-            case.letter,
-            regime.label(),
-            regime.exponent.value,
-            -1.0 / regime.exponent.value
-        )
-    })
+    let (letter, name, rate) = (case.letter, regime.label(), regime.exponent.value);
+    let time = -1.0 / rate;
+    slow.then(|| format!("Case ({letter}): the motion from rest creeps towards {name}, and its exponent is the rate of that: with {rate:.3} /s it takes {time:.0} s to come e times nearer, so in a run of 100 s it need not look periodic; but neighbours do not part at any time, which transient chaos would need."))
 }
 
-fn state(
-    case: &Case,
-    scene: &Scene,
-    variants: &[(f64, f64)],
-    judged: &[Regime],
-    plan: &Plan,
-    item: &mut Item,
-) -> Result<(), Error> {
-    let window = plan.window();
-    let run = retune_solver::simulate(scene, window, &plan.settings())?;
-    let others = variants.iter().zip(judged).skip(1).filter(|(_, regime)| case.agrees(regime));
-    let others: Vec<String> =
-        others.map(|((radius, omega), _)| format!("R = {radius} m, ω = {omega:.2}")).collect();
-    let others =
-        if others.is_empty() { "none of the other settings tried".to_owned() } else { joined(&others, "; ") };
-    let own = &judged[0];
+fn state(case: &Case, run: &Response, others: &[String], own: &Regime, window: Window, item: &mut Item) {
+    let none = "none of the other settings tried".to_owned();
+    let others = if others.is_empty() { none } else { joined(others, "; ") };
     let (name, exponent, error) = (own.label(), own.exponent.value, own.exponent.error);
     let (laminar, confidence) = (100.0 * own.laminar, own.confidence);
     let ([ps, obstacle], Window { from, to }) = (run.impacts, window);
@@ -161,17 +128,13 @@ fn state(
         Verdict::of_all(&[case.agrees(own), Zone::of(run.impacts) == case.zone]),
         format!("{name} (exponent {exponent:.3} ± {error:.3} /s, laminar {laminar:.0} % of the time, confidence {confidence:.2}); {ps} impacts on the PS and {obstacle} on the obstacle in {from}–{to} s; the paper's word fits also at: {others}"),
     );
-    Ok(())
 }
 
 fn draw(plan: &Plan, case: &Case, scene: &Scene, item: &mut Item) -> Result<(), Error> {
     let window = Window { to: plan.window().to + MORE, ..plan.window() };
     let samples = recorded(plan, scene, window, INTERVAL)?;
     let range = |value: fn(&Sample) -> f64| {
-        let (low, high) = samples
-            .iter()
-            .map(value)
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        let [low, high] = ends(samples.iter().map(value));
         let room = 0.06 * (high - low).max(1e-9);
         (low - room, high + room)
     };
@@ -191,10 +154,7 @@ fn draw(plan: &Plan, case: &Case, scene: &Scene, item: &mut Item) -> Result<(), 
     let title = format!("({}) {}", case.letter, case.place());
     let chart = |title: &str, x: &Axis, y: &Axis, layers| Chart {
         title: title.to_owned(),
-        x: x.clone(),
-        y: y.clone(),
-        layers,
-        height: 135.0,
+        ..Chart::of(x.clone(), y.clone(), layers, 135.0)
     };
     let charts = vec![
         chart(&title, &time, &displacement, vec![x2]),
@@ -210,11 +170,10 @@ fn draw(plan: &Plan, case: &Case, scene: &Scene, item: &mut Item) -> Result<(), 
     };
     let name = format!("figure7-{}", case.letter);
     item.picture(&name, &sheet, &format!("({}) The paper: {}.", case.letter, case.paper));
-    let rows = samples.iter().step_by(16).map(
-        |&Sample { t, state: [x1, v1, x2, v2], forces: [ps, obstacle], .. }| {
-            cells![rounded(t), x1, v1, x2, v2, ps, obstacle]
-        },
-    );
+    let row = |&Sample { t, state: [x1, v1, x2, v2], forces: [ps, obstacle], .. }: &Sample| {
+        cells![rounded(t), x1, v1, x2, v2, ps, obstacle]
+    };
+    let rows = samples.iter().step_by(16).map(row);
     let table = Table::named("t_s,x1_m,v1_m_per_s,x2_m,v2_m_per_s,F_PS_N,F_obstacle_N");
     item.data(&name, table.with(rows));
     Ok(())

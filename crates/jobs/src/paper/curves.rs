@@ -9,7 +9,7 @@ use crate::Error;
 use retune_dynamics::Point;
 use retune_report::colour::{BLUE, Colour, GREEN, ORANGE, PURPLE, SKY, VERMILION};
 use retune_report::document::Verdict;
-use retune_report::table::Table;
+use retune_report::table::{Cell, Table};
 use retune_report::{Axis, Chart, Dash, Key, Layer, Sheet, Stroke, cells};
 
 const TITLES: [&str; 3] = ["(a) without damper", "(b) with SSVI NES", "(c) with TMD"];
@@ -22,7 +22,6 @@ const OTHERS: [(Colour, Dash); 5] = [
     (ORANGE, Dash::Dots),
 ];
 
-/// Makes Figure 3.
 pub fn figure3(plan: &Plan) -> Result<Item, Error> {
     let families = Family::all(plan, "figure 3")?;
     let mut item = Item::new(plan.made_by("One run from rest at each frequency."));
@@ -36,29 +35,32 @@ pub fn figure3(plan: &Plan) -> Result<Item, Error> {
     );
     for Family { k1, points: [none, ssvi, tmd], .. } in &families {
         for ((none, ssvi), tmd) in none.iter().zip(ssvi).zip(tmd) {
-            let [ps, obstacle] = ssvi.impacts;
-            data.push(cells![
-                *k1,
-                none.value,
-                none.e1_max,
-                ssvi.e1_max,
-                tmd.e1_max,
-                ssvi.e2_max,
-                tmd.e2_max,
-                ps,
-                obstacle,
-            ]);
+            let energies = [none.e1_max, ssvi.e1_max, tmd.e1_max, ssvi.e2_max, tmd.e2_max];
+            let impacts = ssvi.impacts.map(Cell::from).into();
+            data.push([cells![*k1, none.value], energies.map(Cell::from).into(), impacts].concat());
         }
     }
     item.data("figure3", data);
-    let all: Vec<Detuned> = families
-        .iter()
-        .map(|family| Detuned { family, ladders: family.scenes.map(|scene| Ladder::climb(plan, &scene)) })
-        .collect();
+    let ladders = |family: &Family| family.scenes.map(|scene| Ladder::climb(plan, &scene));
+    let all: Vec<Detuned> =
+        families.iter().map(|family| Detuned { family, ladders: ladders(family) }).collect();
     item.table("Highest points of the curves, and the reduction on the finest frequencies", highest(&all));
-    item.table("The highest points on ever finer frequencies, and of designs near", ladders(plan, &all));
+    let mut table = ladder_table(plan, "k1, N/m | damper");
+    for Detuned { family, ladders } in &all {
+        for (name, ladder) in ["none", "SSVI NES", "TMD"].into_iter().zip(ladders) {
+            table.push([cells![stiffness(family.k1), name], ladder.cells()].concat());
+        }
+    }
+    item.table("The highest points on ever finer frequencies, and of designs near", table);
     statements(plan, &all, &mut item);
-    never_touches(&families, &mut item);
+    let runs: Vec<&Point> = families.iter().flat_map(|family| &family.points[2]).collect();
+    let touched = runs.iter().filter(|point| point.impacts != [0; 2]).count();
+    item.statement(
+        "Large values of C and D ensure that the TMD touches nothing",
+        "Holds if the TMD touches no wall in the window of any run behind these curves.",
+        Verdict::of(touched == 0),
+        format!("{touched} of {} runs with an impact", runs.len()),
+    );
     Ok(item)
 }
 
@@ -68,16 +70,14 @@ fn picture(plan: &Plan, families: &[Family]) -> Sheet {
         (colour, dash) => Stroke::new(colour, 1.1, dash),
     };
     let top = families.iter().map(|f| f.highest(0).energy).fold(0.0, f64::max) * 1.06;
-    let chart = |scene: usize| Chart {
-        title: TITLES[scene].to_owned(),
-        x: Axis::linear("ω, rad/s", (plan.file.omega.from, plan.file.omega.to)),
-        y: Axis::linear("E1max, J", (0.0, if scene == 0 { top } else { 0.7 * top })),
-        layers: families
-            .iter()
-            .enumerate()
-            .map(|(i, f)| Layer::line(f.points[scene].iter().map(|p| (p.value, p.e1_max)), style(i, f)))
-            .collect(),
-        height: 140.0,
+    let chart = |scene: usize| {
+        let x = Axis::linear("ω, rad/s", (plan.file.omega.from, plan.file.omega.to));
+        let y = Axis::linear("E1max, J", (0.0, if scene == 0 { top } else { 0.7 * top }));
+        let line = |(i, f): (usize, &Family)| {
+            Layer::line(f.points[scene].iter().map(|p| (p.value, p.e1_max)), style(i, f))
+        };
+        let layers = families.iter().enumerate().map(line).collect();
+        Chart { title: TITLES[scene].to_owned(), ..Chart::of(x, y, layers, 140.0) }
     };
     let key = |(i, family): (usize, &Family)| {
         (Key::Line(style(i, family)), format!("k1 = {} N/m", stiffness(family.k1)))
@@ -90,28 +90,6 @@ fn picture(plan: &Plan, families: &[Family]) -> Sheet {
             (0..3).map(chart).collect(),
         )
     }
-}
-
-fn never_touches(families: &[Family], item: &mut Item) {
-    let all: Vec<&Point> = families.iter().flat_map(|family| &family.points[2]).collect();
-    let touched = all.iter().filter(|point| point.impacts != [0; 2]).count();
-    item.statement(
-        "Large values of C and D ensure that the TMD touches nothing",
-        "Holds if the TMD touches no wall in the window of any run behind these curves.",
-        Verdict::of(touched == 0),
-        format!("{touched} of {} runs with an impact", all.len()),
-    );
-}
-
-/// What the highest points are worth.
-fn ladders(plan: &Plan, all: &[Detuned]) -> Table {
-    let mut table = ladder_table(plan, "k1, N/m | damper");
-    for Detuned { family, ladders } in all {
-        for (name, ladder) in ["none", "SSVI NES", "TMD"].into_iter().zip(ladders) {
-            table.push([cells![stiffness(family.k1), name], ladder.cells()].concat());
-        }
-    }
-    table
 }
 
 fn highest(all: &[Detuned]) -> Table {

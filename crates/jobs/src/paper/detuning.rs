@@ -3,7 +3,7 @@
 
 use super::family::{Family, SMOOTH};
 use super::item::Item;
-use super::measures::{Ladder, Pick, RULE, decided, verdict};
+use super::measures::{Ladder, Pick, RULE, decided, ends, verdict};
 use super::plan::{Plan, stiffness};
 use retune_report::document::Verdict;
 use retune_study::joined;
@@ -26,7 +26,6 @@ const RETAINED: f64 = 0.9;
 
 /// The curves at one stiffness with the ladders of their highest points.
 pub struct Detuned<'a> {
-    /// The curves.
     pub family: &'a Family,
     /// Without damper, with SSVI NES, with TMD.
     pub ladders: [Ladder; 3],
@@ -56,7 +55,6 @@ impl Structures<'_> {
         (self.all[i].reduction(SSVI, pick) / self.all[i].reduction(TMD, pick) - 1.0).abs()
     }
 
-    /// Their reductions in words.
     fn words(&self, of: Range<usize>, tuned: impl Fn(usize) -> String) -> String {
         let [ssvi, tmd] = DAMPERS.map(|scene| {
             let all = self.all[of.clone()].iter().map(|one| format!("{:.2}", one.reduction(scene, FINEST)));
@@ -76,11 +74,6 @@ fn with_each(of: &Range<usize>, holds: impl Fn(usize, usize, Pick) -> bool) -> [
     DAMPERS.map(|scene| decided(|pick| of.clone().all(|i| holds(i, scene, pick))))
 }
 
-/// The least and the largest of some numbers.
-fn ends(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
-    numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], one| [low.min(one), high.max(one)])
-}
-
 fn percent(share: f64) -> String {
     format!("{:.0} %", 100.0 * share)
 }
@@ -94,7 +87,6 @@ fn decide(item: &mut Item, paper: &str, rule: &str, parts: &[Option<bool>], foun
     item.statement(paper, &format!("{rule} {RULE}"), verdict(parts), found);
 }
 
-/// Checks the paper's statements one by one.
 pub fn statements(plan: &Plan, all: &[Detuned], item: &mut Item) {
     let mut by_k1: Vec<&Detuned> = all.iter().collect();
     by_k1.sort_by(|a, b| a.family.k1.total_cmp(&b.family.k1));

@@ -1,6 +1,7 @@
 //! The two charts of Figure 4 for one stiffness: impact zones with energies, and the orbit diagram with its regimes.
 
 use super::family::Family;
+use super::measures::ends;
 use super::motions::Motions;
 use super::plan::stiffness;
 use retune_dynamics::sweep::zones;
@@ -19,16 +20,14 @@ const NONE: Stroke = Stroke::new(BLACK, 0.9, Dash::Long);
 const SSVI: Stroke = Stroke::new(VERMILION, 1.4, Dash::Dots);
 const TMD: Stroke = Stroke::solid(GREEN);
 const DAMPER: Stroke = Stroke::solid(ORANGE);
-/// The natural frequency.
 const NATURAL: Stroke = Stroke::new(BLACK, 0.7, Dash::Solid);
 
-/// Both charts with their legend.
 pub fn picture(family: &Family, motions: &Motions) -> Sheet {
     let omega = (motions.omega[0], motions.omega[motions.omega.len() - 1]);
     let k1 = stiffness(family.k1);
     Sheet {
         columns: 2,
-        legend: legend().into_iter().map(|(key, words)| (key, words.to_owned())).collect(),
+        legend: legend(),
         ..Sheet::page(
             format!("Impact zones and motions at k1 = {k1} N/m"),
             format!(
@@ -41,7 +40,6 @@ pub fn picture(family: &Family, motions: &Motions) -> Sheet {
     }
 }
 
-/// The colour of a kind of motion.
 fn colour(kind: Kind) -> Colour {
     match kind {
         Kind::Periodic => GREY,
@@ -52,9 +50,9 @@ fn colour(kind: Kind) -> Colour {
     }
 }
 
-fn legend() -> Vec<(Key, &'static str)> {
+fn legend() -> Vec<(Key, String)> {
     let kinds = [Kind::Periodic, Kind::AmplitudeModulated, Kind::Chaotic, Kind::Intermittent, Kind::Settling];
-    let mut keys = vec![
+    let others = [
         (Key::Heading, "zones:"),
         (Key::Area(PURPLE, 0.35), "both walls struck"),
         (Key::Area(SKY, 0.35), "PS only"),
@@ -69,11 +67,10 @@ fn legend() -> Vec<(Key, &'static str)> {
         (Key::Mark(Mark::new(Shape::Disc, SKY, 4.0)), "another motion, on the way down"),
         (Key::Heading, "strip:"),
     ];
-    keys.extend(kinds.map(|kind| (Key::Area(colour(kind), 1.0), kind.words())));
-    keys
+    let kinds = kinds.map(|kind| (Key::Area(colour(kind), 1.0), kind.words()));
+    others.into_iter().chain(kinds).map(|(key, words)| (key, words.to_owned())).collect()
 }
 
-/// All values.
 const EVERYWHERE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 
 fn zone_chart(family: &Family, omega: (f64, f64)) -> Chart {
@@ -97,13 +94,8 @@ fn zone_chart(family: &Family, omega: (f64, f64)) -> Chart {
     layers.push(curve(1, |p| p.e2_max, DAMPER));
     layers.push(curve(1, |p| p.e1_max, SSVI));
     let top = family.highest(0).energy.max(family.highest(1).energy);
-    Chart {
-        title: format!("k1 = {} N/m: impact zones, energies", stiffness(family.k1)),
-        x: Axis::linear("ω, rad/s", omega),
-        y: Axis::linear("E, J", (0.0, 1.05 * top)),
-        layers,
-        height: 190.0,
-    }
+    let title = format!("k1 = {} N/m: impact zones, energies", stiffness(family.k1));
+    chart(title, omega, Axis::linear("E, J", (0.0, 1.05 * top)), layers)
 }
 
 fn orbit_chart(family: &Family, motions: &Motions, omega: (f64, f64)) -> Chart {
@@ -111,22 +103,17 @@ fn orbit_chart(family: &Family, motions: &Motions, omega: (f64, f64)) -> Chart {
         let value = orbit.value;
         orbit.samples.iter().map(move |y| (value, y[2])).collect::<Vec<_>>()
     };
-    let from_rest =
-        Layer::Dots { points: motions.orbits[0].iter().flat_map(points).collect(), colour: BLACK, size: 1.3 };
+    let from_rest = motions.orbits[0].iter().flat_map(points).collect();
+    let from_rest = Layer::Dots { points: from_rest, colour: BLACK, size: 1.3 };
     // What a sweep reaches is drawn where it is another motion than that from rest: elsewhere dots would hide dots.
-    let others = |start: usize, colour| Layer::Dots {
-        points: motions
-            .coexisting
-            .iter()
-            .filter(|here| here.motions.iter().any(|(other, _)| *other == start))
-            .flat_map(|here| points(&motions.orbits[start][here.index]))
-            .collect(),
-        colour,
-        size: 2.6,
+    let others = |start: usize, colour| {
+        let reached =
+            motions.coexisting.iter().filter(|here| here.motions.iter().any(|(other, _)| *other == start));
+        let points = reached.flat_map(|here| points(&motions.orbits[start][here.index])).collect();
+        Layer::Dots { points, colour, size: 2.6 }
     };
     let values = motions.orbits.iter().flatten().flat_map(|o| o.samples.iter().map(|y| y[2]));
-    let (low, high) =
-        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+    let [low, high] = ends(values);
     // Space on top for the strip and two rows of labels.
     let range = (low - 0.05 * (high - low), high + 0.3 * (high - low));
     let height = |share: f64| range.0 + share * (range.1 - range.0);
@@ -134,13 +121,12 @@ fn orbit_chart(family: &Family, motions: &Motions, omega: (f64, f64)) -> Chart {
     layers.push(Layer::Upright { x: family.natural, stroke: NATURAL });
     layers.extend([from_rest, others(1, VERMILION), others(2, SKY)]);
     layers.extend(labels(motions, family.natural, omega, ROWS.map(height)));
-    Chart {
-        title: "x2 at the crests of the force; regimes nT, m, k".into(),
-        x: Axis::linear("ω, rad/s", omega),
-        y: Axis::linear("x2, m", range),
-        layers,
-        height: 190.0,
-    }
+    let title = "x2 at the crests of the force; regimes nT, m, k".to_owned();
+    chart(title, omega, Axis::linear("x2, m", range), layers)
+}
+
+fn chart(title: String, omega: (f64, f64), y: Axis, layers: Vec<Layer>) -> Chart {
+    Chart { title, ..Chart::of(Axis::linear("ω, rad/s", omega), y, layers, 190.0) }
 }
 
 /// A strip on top, from a height on, coloured by the kind of motion from rest.

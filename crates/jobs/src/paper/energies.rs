@@ -9,7 +9,7 @@ use retune_dynamics::{Parameter, Point, independent};
 use retune_model::{Scene, energy_ratios};
 use retune_report::colour::{BLACK, BLUE, Colour, ORANGE, VERMILION};
 use retune_report::document::Verdict;
-use retune_report::table::Table;
+use retune_report::table::{Cell, Table};
 use retune_report::{Axis, Chart, Dash, Key, Layer, Sheet, Stroke, cells};
 use retune_solver::{Sample, simulate};
 
@@ -21,7 +21,6 @@ const LINES: [(Stroke, &str); 3] = [
     (Stroke::new(ORANGE, 0.7, Dash::Solid), "E2, damper"),
 ];
 
-/// Makes Figure 6.
 pub fn figure6(plan: &Plan) -> Result<Item, Error> {
     let scenes = plan.scenes(plan.tuned())?;
     let omega = scenes[1].forcing.frequency.get();
@@ -34,20 +33,17 @@ pub fn figure6(plan: &Plan) -> Result<Item, Error> {
         let [e1, e2] = [run.e1_max.value, run.e2_max.value];
         Ok([e1, e2, energy_ratios(e1, e2)[1]])
     };
-    let tuned = best_tmd(plan)?;
-    let words = tmd_words(&tuned);
-    let [none, _, _] = largest(&scenes[0])?;
-    let [e1, e2, r2] = largest(&scenes[1])?;
-    let [tmd_e1, tmd_e2, tmd_r2] = largest(&scenes[2])?;
-    let [best_e1, best_e2, best_r2] = largest(&tuned)?;
+    let best = best_tmd(plan)?;
+    let words = tmd_words(&best);
+    let [none, ..] = largest(&scenes[0])?;
+    let [ssvi, tmd, best] = [largest(&scenes[1])?, largest(&scenes[2])?, largest(&best)?];
     let row = |name: &str, [e1, e2, r2]: [f64; 3]| {
         cells![name, format!("{e1:.1}"), format!("{e2:.1}"), format!("{r2:.3}")]
     };
-    let table = Table::headed("damper | E1max, J | E2max, J | R2").with([
-        row("SSVI NES, the paper's", [e1, e2, r2]),
-        row("TMD, the paper's", [tmd_e1, tmd_e2, tmd_r2]),
-        row(&format!("TMD, {words}"), [best_e1, best_e2, best_r2]),
-    ]);
+    let dampers = ["SSVI NES, the paper's", "TMD, the paper's", &format!("TMD, {words}")];
+    let rows = dampers.into_iter().zip([ssvi, tmd, best]).map(|(name, numbers)| row(name, numbers));
+    let table = Table::headed("damper | E1max, J | E2max, J | R2").with(rows);
+    let ([e1, e2, r2], [tmd_e1, tmd_e2, tmd_r2], [best_e1, _, best_r2]) = (ssvi, tmd, best);
     item.table("Largest energies after the transient, and the damper's R2, beside the TMD that is tuned (k2 and c2 free, least worst case over 5 to 8 rad/s)", table);
     item.statement(
         "Both dampers effectively reduce the maximum energy of the PS at resonance",
@@ -64,7 +60,6 @@ pub fn figure6(plan: &Plan) -> Result<Item, Error> {
     Ok(item)
 }
 
-/// The figure and its data.
 fn over_time(plan: &Plan, scenes: &[Scene; 3], item: &mut Item) -> Result<(), Error> {
     let window = plan.whole_run();
     let record = |scene| recorded(plan, scene, window, INTERVAL);
@@ -73,12 +68,10 @@ fn over_time(plan: &Plan, scenes: &[Scene; 3], item: &mut Item) -> Result<(), Er
     let line = |samples: &[Sample], energy: fn(&Sample) -> f64, i: usize| {
         Layer::line(samples.iter().map(|s| (s.t, energy(s))), LINES[i].0)
     };
-    let charts = [("(a) SSVI NES", &ssvi), ("(b) TMD", &tmd)].map(|(title, damper)| Chart {
-        title: title.to_owned(),
-        x: Axis::linear("t, s", (0.0, window.to)),
-        y: Axis::linear("E, J", (0.0, top)),
-        layers: vec![line(&none, |s| s.e1, 0), line(damper, |s| s.e1, 1), line(damper, |s| s.e2, 2)],
-        height: 150.0,
+    let charts = [("(a) SSVI NES", &ssvi), ("(b) TMD", &tmd)].map(|(title, damper)| {
+        let (x, y) = (Axis::linear("t, s", (0.0, window.to)), Axis::linear("E, J", (0.0, top)));
+        let layers = vec![line(&none, |s| s.e1, 0), line(damper, |s| s.e1, 1), line(damper, |s| s.e2, 2)];
+        Chart { title: title.to_owned(), ..Chart::of(x, y, layers, 150.0) }
     });
     let sheet = Sheet {
         legend: LINES.map(|(stroke, words)| (Key::Line(stroke), words.to_owned())).to_vec(),
@@ -107,7 +100,6 @@ struct Graph<'a> {
     tmd: &'a [Point],
 }
 
-/// Makes Figure 5.
 pub fn figure5(plan: &Plan) -> Result<Item, Error> {
     let stiffnesses = plan.file.k1_range.values();
     let lowest = plan.file.k1.iter().copied().fold(f64::INFINITY, f64::min);
@@ -206,25 +198,18 @@ impl<'a> Graph<'a> {
         let line = |points: &[Point], colour, ratio: usize| {
             Layer::line(points.iter().map(|p| (p.value, p.ratios()[ratio])), stroke(colour, ratio))
         };
-        Chart {
-            title: self.title.clone(),
-            x: Axis::linear(self.label, self.range),
-            y: Axis::linear("R1, R2", (-0.03, 1.05)),
-            layers: vec![
-                line(self.ssvi, VERMILION, 0),
-                line(self.ssvi, VERMILION, 1),
-                line(self.tmd, BLUE, 0),
-                line(self.tmd, BLUE, 1),
-            ],
-            height: 125.0,
-        }
+        let (x, y) = (Axis::linear(self.label, self.range), Axis::linear("R1, R2", (-0.03, 1.05)));
+        let both = |points, colour| [0, 1].map(|ratio| line(points, colour, ratio));
+        let layers = [both(self.ssvi, VERMILION), both(self.tmd, BLUE)].concat();
+        Chart { title: self.title.clone(), ..Chart::of(x, y, layers, 125.0) }
     }
 
     fn table(&self) -> Table {
-        let rows = self.ssvi.iter().zip(self.tmd).map(|(ssvi, tmd)| {
-            let ([r1, r2], [tmd_r1, tmd_r2]) = (ssvi.ratios(), tmd.ratios());
-            cells![ssvi.value, r1, r2, tmd_r1, tmd_r2]
-        });
+        let row = |(ssvi, tmd): (&Point, &Point)| {
+            let ratios = [ssvi, tmd].map(Point::ratios).concat();
+            cells![ssvi.value].into_iter().chain(ratios.into_iter().map(Cell::from)).collect()
+        };
+        let rows = self.ssvi.iter().zip(self.tmd).map(row);
         Table::named(&format!("{},R1_SSVI,R2_SSVI,R1_TMD,R2_TMD", self.column)).with(rows)
     }
 }

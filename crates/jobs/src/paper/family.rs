@@ -15,11 +15,9 @@ pub struct Family {
     pub half_width: f64,
     /// Without damper, with SSVI NES, with TMD.
     pub points: [Vec<Point>; 3],
-    /// The scenes of the curves.
     pub scenes: [Scene; 3],
 }
 
-/// A peak of a curve.
 #[derive(Clone, Copy)]
 pub struct Peak {
     /// Frequency, rad/s.
@@ -29,7 +27,6 @@ pub struct Peak {
 }
 
 impl Family {
-    /// Computes all three curves at `k1`.
     pub fn compute(plan: &Plan, k1: f64, bar: &dyn Progress) -> Result<Self, Error> {
         let scenes = plan.scenes(k1)?;
         let omega = plan.file.omega.values();
@@ -43,7 +40,6 @@ impl Family {
         Ok(Self { k1, natural, half_width, points, scenes })
     }
 
-    /// All families of the plan.
     pub fn all(plan: &Plan, what: &'static str) -> Result<Vec<Self>, Error> {
         let bar = plan.watch.progress(what, (3 * plan.file.k1.len() * plan.file.omega.points) as u64);
         let families = plan.file.k1.iter().map(|&k1| Self::compute(plan, k1, &*bar)).collect();
@@ -51,7 +47,6 @@ impl Family {
         families
     }
 
-    /// The highest point of a curve.
     pub fn highest(&self, scene: usize) -> Peak {
         let best = self.points[scene].iter().max_by(|a, b| a.e1_max.total_cmp(&b.e1_max));
         best.map_or(Peak { omega: f64::NAN, energy: f64::NAN }, |p| Peak { omega: p.value, energy: p.e1_max })

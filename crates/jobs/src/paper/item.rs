@@ -10,20 +10,16 @@ use serde::{Deserialize, Serialize};
 pub struct Item {
     /// The settings of our results.
     pub made_by: String,
-    /// Figures.
     pub pictures: Vec<Picture>,
     /// Tables for readers, each with its caption.
     pub tables: Vec<(String, Table)>,
-    /// The paper's statements, one by one.
     pub statements: Vec<Statement>,
-    /// Further remarks.
     pub notes: Vec<String>,
     /// Data: the name of each file and its table.
     pub data: Vec<(String, Table)>,
 }
 
 impl Item {
-    /// An item without content.
     pub fn new(made_by: String) -> Self {
         Self { made_by, ..Self::default() }
     }
@@ -42,7 +38,6 @@ impl Item {
         self.pictures.push(Picture { file, drawing: drawing(sheet), caption });
     }
 
-    /// Adds a table for readers.
     pub fn table(&mut self, caption: &str, table: Table) {
         self.tables.push((caption.to_owned(), table));
     }
@@ -52,7 +47,6 @@ impl Item {
         self.data.push((format!("{name}.csv"), table));
     }
 
-    /// Adds a statement.
     pub fn statement(&mut self, paper: &str, rule: &str, verdict: Verdict, found: String) {
         let [paper, rule] = [paper, rule].map(str::to_owned);
         self.statements.push(Statement { paper, rule, conjecture: false, verdict, found });
@@ -60,7 +54,7 @@ impl Item {
 
     /// Adds a conjecture of ours.
     pub fn conjecture(&mut self, ours: &str, rule: &str, verdict: Verdict, found: String) {
-        let [paper, rule] = [ours, rule].map(str::to_owned);
-        self.statements.push(Statement { paper, rule, conjecture: true, verdict, found });
+        self.statement(ours, rule, verdict, found);
+        self.statements.iter_mut().rev().take(1).for_each(|last| last.conjecture = true);
     }
 }

@@ -32,25 +32,18 @@ impl Spread {
         Self { least: at(0.0), median: at(0.5), largest: at(1.0) }
     }
 
-    /// Whether a value lies within.
     pub fn holds(&self, value: f64) -> bool {
         (self.least..=self.largest).contains(&value)
     }
 
-    /// Its three numbers in words.
     pub fn words(&self) -> String {
         format!("{:.0} – {:.0} (median {:.0})", self.least, self.largest, self.median)
     }
 }
 
-/// What a function gives for each of some things, side by side.
-pub fn for_each<T: Sync, U: Send>(
-    all: &[T],
-    of: impl Fn(&T) -> Result<U, Error> + Sync + Send,
-) -> Result<Vec<U>, Error> {
-    // The first error is that of the first thing, not of the first thread.
-    let made: Vec<Result<U, Error>> = all.par_iter().map(of).collect();
-    made.into_iter().collect()
+/// The least and the largest of some numbers.
+pub fn ends(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
+    numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], one| [low.min(one), high.max(one)])
 }
 
 /// The worst over the band of the page.
@@ -89,7 +82,6 @@ pub fn best_tmd(plan: &Plan) -> Result<Scene, Error> {
     Ok(Scene { damper: Some(crate::retention::best_tmd(&scene, damper(&plan.tmd)?, BAND)?.0), ..scene })
 }
 
-/// Its spring and its damping in words.
 pub fn tmd_words(scene: &Scene) -> String {
     scene.damper.map_or(String::new(), |damper| {
         format!("k2 = {:.0} N/m, c2 = {:.0} N·s/m", damper.stiffness.get(), damper.damping.get())
@@ -118,7 +110,6 @@ pub struct Ladder {
     pub near: Spread,
 }
 
-/// One number of a ladder.
 pub type Pick = fn(&Ladder) -> f64;
 /// Those that a verdict must hold on: the finest, and both ends of the spread.
 const PICKS: [Pick; 3] = [Ladder::finest, |ladder| ladder.near.least, |ladder| ladder.near.largest];
@@ -131,7 +122,6 @@ impl Ladder {
         Self { values, near }
     }
 
-    /// On the finest frequencies.
     pub fn finest(&self) -> f64 {
         self.values.last().copied().unwrap_or(f64::NAN)
     }
@@ -158,7 +148,6 @@ fn middle(plan: &Plan) -> usize {
     rungs.get(rungs.len() / 2).copied().unwrap_or(2)
 }
 
-/// The finest number of frequencies.
 pub fn finest(plan: &Plan) -> usize {
     plan.file.ladder.last().copied().unwrap_or(2)
 }

@@ -2,9 +2,9 @@
 //! the branch of its motions the ends of a periodic one are exact, with the bifurcation there.
 
 use super::family::Family;
-use super::measures::for_each;
 use super::plan::{Plan, stiffness};
-use crate::{Error, Progress};
+use crate::rows::of_each;
+use crate::{Error, Progress, Silent};
 use retune_dynamics::periodic::branches::{Control, Plan as BranchPlan};
 use retune_dynamics::periodic::{Branch, End, EventKind, branches};
 use retune_dynamics::poincare::Periods;
@@ -41,7 +41,6 @@ pub struct Motions {
 
 /// Motions that exist at the same frequency.
 pub struct Coexisting {
-    /// Index of the frequency.
     pub index: usize,
     /// Each motion once, with the first of [`STARTS`] that leads to it.
     pub motions: Vec<(usize, Regime)>,
@@ -53,10 +52,8 @@ impl Motions {
         let omega: Vec<f64> = plan.file.motions.values().into_iter().map(|ratio| ratio * natural).collect();
         let down: Vec<f64> = omega.iter().rev().copied().collect();
         let settings = plan.settings();
-        let records = for_each(&omega, |&value| {
-            let record = follow(&Parameter::Omega.at(*scene, value)?, None, Stretch::default(), &settings)?;
-            bar.inc(1);
-            Ok(record)
+        let records = of_each(&omega, bar, |&value| {
+            Ok(follow(&Parameter::Omega.at(*scene, value)?, None, Stretch::default(), &settings)?)
         })?;
         let sweep = |values: &[f64]| {
             let periods = Periods { settle: SETTLE[1], record: RECORD };
@@ -69,9 +66,8 @@ impl Motions {
         let rest = independent_orbits(scene, Parameter::Omega, &omega, periods, &settings, || bar.inc(1))?;
         let orbits = [rest, up?, back];
         let indices: Vec<usize> = (0..omega.len()).collect();
-        let coexisting =
-            for_each(&indices, |&index| coexisting(plan, scene, index, &records[index], &orbits))?;
-        let coexisting = coexisting.into_iter().flatten().collect();
+        let differ = |&index: &usize| coexisting(plan, scene, index, &records[index], &orbits);
+        let coexisting = of_each(&indices, &Silent, differ)?.into_iter().flatten().collect();
         Ok(Self { omega, regimes: records.iter().map(classify).collect(), orbits, coexisting })
     }
 
@@ -142,7 +138,7 @@ struct Part {
 
 /// Where periodic motions begin and end.
 pub fn begins(plan: &Plan, all: &[(Family, Motions)]) -> Result<Table, Error> {
-    let found = for_each(all, |(family, motions)| {
+    let found = of_each(all, &Silent, |(family, motions)| {
         let range = [motions.omega[0], motions.omega[motions.omega.len() - 1]];
         let samples = SAMPLES.min(motions.omega.len());
         let wanted =
@@ -154,15 +150,11 @@ pub fn begins(plan: &Plan, all: &[(Family, Motions)]) -> Result<Table, Error> {
     );
     for ((family, _), found) in all.iter().zip(found) {
         let [from, to] = found.plan.range;
-        let mut parts: Vec<Part> = Vec::new();
-        for (number, branch) in found.branches.iter().enumerate() {
-            for part in stable_parts(branch) {
-                let within = |value: f64| part.ends[0].0 <= value && value <= part.ends[1].0;
-                let rest = found.on(number).any(|(sample, one)| one.from_rest && within(sample.value));
-                parts.push(Part { rest, ..part });
-            }
-        }
-        for Part { label, ends: [begin, end], rest } in merged(parts) {
+        let parts = found.branches.iter().enumerate().flat_map(|(number, branch)| {
+            let rest = found.on(number).filter(|(_, one)| one.from_rest).map(|(sample, _)| sample.value);
+            stable_parts(branch, &rest.collect::<Vec<f64>>())
+        });
+        for Part { label, ends: [begin, end], rest } in merged(parts.collect()) {
             if end.0 - begin.0 >= NARROW * (to - from) {
                 table.push(cells![
                     stiffness(family.k1),
@@ -199,8 +191,8 @@ fn merged(mut parts: Vec<Part>) -> Vec<Part> {
     found
 }
 
-/// The parts of a branch with stable motions of one name.
-fn stable_parts(branch: &Branch) -> Vec<Part> {
+/// The parts of a branch with stable motions of one name; runs `from_rest` end on it at these frequencies.
+fn stable_parts(branch: &Branch, from_rest: &[f64]) -> Vec<Part> {
     let event = |place: usize| branch.events.iter().find(|event| event.place == place);
     let last = branch.points.len() - 1;
     let why = |place: usize| match event(place) {
@@ -226,7 +218,8 @@ fn stable_parts(branch: &Branch) -> Vec<Part> {
             let label = periodic_label(orbit.periods, ['S', 'O'].map(struck));
             let mut ends = [at(begin), at(place)];
             ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-            found.push(Part { label, ends, rest: false });
+            let rest = from_rest.iter().any(|value| (ends[0].0..=ends[1].0).contains(value));
+            found.push(Part { label, ends, rest });
             first = None;
         }
         if goes_on && first.is_none() {

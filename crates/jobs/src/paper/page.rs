@@ -10,9 +10,7 @@ use retune_study::counted;
 
 /// A table or figure of the paper, or another item of the page.
 pub struct Entry {
-    /// Its name, with which the names of its files begin.
     pub name: &'static str,
-    /// Its title.
     pub title: &'static str,
     /// What the paper shows.
     pub paper: &'static str,
@@ -83,7 +81,6 @@ pub static ENTRIES: [Entry; 9] = [
     },
 ];
 
-/// The whole page.
 pub fn page(items: &[(&'static Entry, Item)]) -> String {
     let of_paper = || items.iter().flat_map(|(_, item)| &item.statements).filter(|one| !one.conjecture);
     let [holds, partly, fails, undecided] =
@@ -139,20 +136,19 @@ fn verdicts(items: &[(&'static Entry, Item)]) -> Block {
 /// An item as a section: the first figure stands open, what lies behind it and its verdicts is unfolded by who wants it.
 fn blocks(entry: &Entry, item: &Item) -> Vec<Block> {
     let mut blocks = vec![Block::About("In the paper", entry.paper.to_owned())];
-    let folded = |subject: String, inner: Vec<Block>| {
-        if inner.is_empty() { None } else { Some(Block::Folded(subject, inner)) }
+    let folded = |subject: &str, inner: Vec<Block>| {
+        (!inner.is_empty()).then(|| Block::Folded(subject.to_owned(), inner))
     };
     let mut pictures = item.pictures.iter().cloned().map(Block::Picture);
     let count = item.statements.len();
-    let statements = if count == 0 { Vec::new() } else { vec![Block::Statements(item.statements.clone())] };
-    let reasons =
-        folded(format!("{}: verdicts, rules and numbers", counted(count as u64, "statement")), statements);
+    let statements = (count > 0).then(|| Block::Statements(item.statements.clone()));
+    let subject = format!("{}: verdicts, rules and numbers", counted(count as u64, "statement"));
     blocks.extend(pictures.next());
-    blocks.extend(reasons);
-    blocks.extend(folded("More figures".to_owned(), pictures.collect()));
+    blocks.extend(folded(&subject, statements.into_iter().collect()));
+    blocks.extend(folded("More figures", pictures.collect()));
     let table = |(caption, table): &(String, Table)| Block::of_table(caption, table);
     let inner = item.tables.iter().map(table).chain(item.notes.iter().cloned().map(Block::Words));
-    blocks.extend(folded("Tables and remarks".to_owned(), inner.collect()));
+    blocks.extend(folded("Tables and remarks", inner.collect()));
     blocks.push(Block::MadeBy(item.made_by.clone()));
     if !item.data.is_empty() {
         blocks.push(Block::Files(item.data.iter().map(|(name, _)| name.clone()).collect()));

@@ -62,17 +62,17 @@ pub type Tuner<'a> = dyn FnMut(&Study) -> Result<Design, Error> + 'a;
 
 /// The plan with all that it names.
 pub struct Plan<'a> {
-    /// As read.
     pub file: PaperPlan,
-    /// The SSVI NES.
     pub ssvi: Study,
-    /// The TMD.
     pub tmd: Study,
     /// Who follows.
     pub watch: &'a dyn Observer,
     /// Whether only verdicts are wanted, on fewer points.
     pub is_brief: bool,
 }
+
+/// How many points are allowed.
+const POINTS: std::ops::RangeInclusive<usize> = 2..=100_000;
 
 /// Most steps of a run: a hundred times what the paper's runs take, so that one that chatters on a wall ends in seconds.
 const MOST_STEPS: u64 = 1_000_000;
@@ -81,22 +81,17 @@ const MOST_STEPS: u64 = 1_000_000;
 pub const RADII: [f64; 5] = [0.1, 0.5, 2.0, 5.0, 10.0];
 
 impl Range {
-    /// The values.
     pub fn values(self) -> Vec<f64> {
         retune_dynamics::parameter::evenly(self.from, self.to, self.points)
     }
 
     fn is_sound(self) -> bool {
-        self.from.is_finite()
-            && self.to.is_finite()
-            && 0.0 < self.from
-            && self.from < self.to
-            && (2..=100_000).contains(&self.points)
+        let Self { from, to, points } = self;
+        from.is_finite() && to.is_finite() && 0.0 < from && from < to && POINTS.contains(&points)
     }
 }
 
 impl<'a> Plan<'a> {
-    /// Reads the plan at `path`.
     pub fn read(path: &Path, watch: &'a dyn Observer) -> Result<Self, Error> {
         let file: PaperPlan = read_paper(path)?;
         let refuse = |problem: &str| {
@@ -111,7 +106,7 @@ impl<'a> Plan<'a> {
             }
         }
         let ladder = &file.ladder;
-        if ladder.is_empty() || !ladder.is_sorted() || !ladder.iter().all(|n| (2..=100_000).contains(n)) {
+        if ladder.is_empty() || !ladder.is_sorted() || !ladder.iter().all(|n| POINTS.contains(n)) {
             return Err(refuse("ladder: give at least one number from 2 to 100000, ascending"));
         }
         let directory = path.parent().unwrap_or(Path::new(""));
@@ -154,7 +149,6 @@ impl<'a> Plan<'a> {
         RADII.into_iter().filter(move |radius| *radius != own)
     }
 
-    /// The window of the maxima.
     pub fn window(&self) -> Window {
         self.ssvi.window.window()
     }
@@ -181,7 +175,6 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// The damper of a study.
 pub fn damper(study: &Study) -> Result<Damper, Error> {
     study.scene.damper.ok_or_else(|| Error::NoStart(Failures::default()))
 }

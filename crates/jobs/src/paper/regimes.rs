@@ -14,7 +14,6 @@ use retune_report::table::Table;
 use retune_study::joined;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Makes Figure 4.
 pub fn figure4(plan: &Plan) -> Result<Item, Error> {
     let families = Family::all(plan, "figure 4, curves")?;
     let count = families.len() * plan.file.motions.points * RUNS;
@@ -37,10 +36,8 @@ pub fn figure4(plan: &Plan) -> Result<Item, Error> {
         );
         item.picture(&format!("figure4-k1-{k1}"), &diagrams::picture(family, motions), &caption);
     }
-    item.table(
-        "The motions from rest, as the frequency rises (windows of three frequencies or more)",
-        names(&all),
-    );
+    let caption = "The motions from rest, as the frequency rises (windows of three frequencies or more)";
+    item.table(caption, names(&all));
     item.table("Frequencies at which more than one motion was found", coexisting(&all));
     if !plan.is_brief {
         let caption = "Where periodic motions begin and end as the frequency rises, on their branches";
@@ -77,10 +74,9 @@ fn coexisting(all: &[(Family, Motions)]) -> Table {
     let mut table = Table::headed("k1, N/m | ω, rad/s | motions | reached first by | what they are");
     for (family, motions) in all {
         for here in &motions.coexisting {
-            let starts: Vec<&str> = here.motions.iter().map(|(start, _)| STARTS[*start]).collect();
-            let name =
-                |(_, regime): &(usize, Regime)| format!("{} ({:.2})", regime.label(), regime.confidence);
-            let names: Vec<String> = here.motions.iter().map(name).collect();
+            let name = |regime: &Regime| format!("{} ({:.2})", regime.label(), regime.confidence);
+            let (starts, names): (Vec<&str>, Vec<String>) =
+                here.motions.iter().map(|(start, regime)| (STARTS[*start], name(regime))).unzip();
             table.push(cells![
                 stiffness(family.k1),
                 format!("{:.3}", motions.omega[here.index]),
@@ -101,7 +97,6 @@ fn of_each(all: &[(Family, Motions)], words: impl Fn(&Family, &Motions) -> Vec<S
     joined(&all.iter().map(one).collect::<Vec<_>>(), "; ")
 }
 
-/// The number of frequencies at each stiffness.
 fn frequencies(all: &[(Family, Motions)]) -> usize {
     all.first().map_or(0, |(_, motions)| motions.omega.len())
 }
@@ -155,9 +150,9 @@ fn orbits(all: &[(Family, Motions)]) -> Table {
     for (family, motions) in all {
         for (start, orbits) in STARTS.iter().zip(&motions.orbits) {
             for orbit in orbits {
-                let tenths = orbit.samples.iter().map(|y| (1e4 * y[2]).round() as i64);
-                let distinct: BTreeSet<i64> = tenths.collect();
-                let list: Vec<f64> = distinct.iter().map(|x| *x as f64 / 10.0).collect();
+                let tenths: BTreeSet<i64> =
+                    orbit.samples.iter().map(|y| (1e4 * y[2]).round() as i64).collect();
+                let list: Vec<f64> = tenths.iter().map(|x| *x as f64 / 10.0).collect();
                 table.push(cells![family.k1, *start, format!("{:.6}", orbit.value), joined(&list, " ")]);
             }
         }

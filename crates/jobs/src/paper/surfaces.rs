@@ -24,15 +24,12 @@ const SAMPLES: usize = 31;
 /// Share of the nodes among which a point passes for an optimum that was read from a surface.
 const AMONG: f64 = 0.05;
 
-/// A surface of Figure 2.
 struct Surface {
     name: &'static str,
-    title: &'static str,
     variables: [Parameter; 2],
     ranges: [(f64, f64); 2],
-    /// How a motion is judged in the worst case.
-    response: Response,
-    /// Stiffest spring of a node that is ranked there, N/m: of the TMD that of its row, of the SSVI NES a little above that of its row.
+    /// Stiffest spring of a node that is ranked in the worst case, N/m: of the TMD that of its row, of the SSVI NES a little above that of its
+    /// row.
     stiffest: f64,
 }
 
@@ -40,26 +37,20 @@ struct Surface {
 const SURFACES: [Surface; 3] = [
     Surface {
         name: "figure2-tmd",
-        title: "TMD",
         variables: [Parameter::K2, Parameter::C2],
         ranges: [(100.0, 4000.0), (20.0, 500.0)],
-        response: Response::Steady,
         stiffest: 600.0,
     },
     Surface {
         name: "figure2-ssvi-k2-c2",
-        title: "SSVI NES",
         variables: [Parameter::K2, Parameter::C2],
         ranges: [(50.0, 800.0), (40.0, 440.0)],
-        response: Response::Window,
         stiffest: 300.0,
     },
     Surface {
         name: "figure2-ssvi-D-C",
-        title: "SSVI NES",
         variables: [Parameter::D, Parameter::C],
         ranges: [(0.01, 0.2), (0.05, 0.65)],
-        response: Response::Window,
         stiffest: f64::INFINITY,
     },
 ];
@@ -82,7 +73,6 @@ struct Outcome {
     better: usize,
 }
 
-/// Makes Figure 2.
 pub fn figure2(plan: &Plan) -> Result<Item, Error> {
     let [fine, coarse] = if plan.is_brief { BRIEF } else { POINTS };
     let mut item = Item::new(plan.made_by(&format!(
@@ -141,14 +131,18 @@ impl Surface {
         item: &mut Item,
         done: &(impl Fn() + Sync),
     ) -> Result<Outcome, Error> {
-        let study = if self.title == "TMD" { &plan.tmd } else { &plan.ssvi };
+        let (title, study, response) = match self.name {
+            "figure2-tmd" => ("TMD", &plan.tmd, Response::Steady),
+            _ => ("SSVI NES", &plan.ssvi, Response::Window),
+        };
         let damper = damper(study)?;
         let (suffix, words, objective, stiffest) = if is_worst {
             let words = "at its worst over 5 to 8 rad/s (coarse)";
-            ("-worst", words, over_band(SAMPLES, self.response), self.stiffest)
+            ("-worst", words, over_band(SAMPLES, response), self.stiffest)
         } else {
             ("", "at ω = 6.28 rad/s", Objective::default(), f64::INFINITY)
         };
+        let words = format!("{title}: E1max {words}");
         let goal = Goal { objective, ..plan.window().into() };
         let objective =
             DesignObjective::new(study.scene, damper, self.variables.to_vec(), goal, plan.settings());
@@ -156,15 +150,10 @@ impl Surface {
         let sides = self.ranges.map(|(from, to)| evenly(from, to, points));
         let [xs, ys] = &sides;
         let designs: Vec<[f64; 2]> = ys.iter().flat_map(|&y| xs.iter().map(move |&x| [x, y])).collect();
-        let node = |design: &[f64; 2]| {
-            let node = point(*design);
-            done();
-            node
-        };
-        let nodes: Vec<Point> = designs.par_iter().map(node).collect();
+        let nodes: Vec<Point> = designs.par_iter().map(|design| point(*design)).inspect(|_| done()).collect();
         let paper = point(self.variables.map(|variable| variable.get(&damper)));
         let best = nodes.iter().copied().min_by(|a, b| a.energy.total_cmp(&b.energy)).unwrap_or(paper);
-        self.draw(&format!("{}{suffix}", self.name), words, &sides, &nodes, [best, paper], item);
+        self.draw(&format!("{}{suffix}", self.name), &words, &sides, &nodes, [best, paper], item);
         let ranked = nodes.iter().filter(|node| node.at[0] <= stiffest);
         let step = [xs[1] - xs[0], ys[1] - ys[0]];
         Ok(Outcome {
@@ -203,12 +192,12 @@ impl Surface {
             width: Width::Column,
             legend,
             ..Sheet::page(
-                format!("{}: E1max {words} over {a} and {b}", self.title),
+                format!("{words} over {a} and {b}"),
                 format!("A map of {points} by {points} cells. Marked: {marked}."),
                 vec![chart],
             )
         };
-        item.picture(file, &sheet, &format!("{}: E₁max {words} over {a} and {b}.", self.title));
+        item.picture(file, &sheet, &format!("{} over {a} and {b}.", words.replace("E1max", "E₁max")));
         let rows = nodes.iter().map(|Point { at: [x, y], energy }| cells![*x, *y, *energy]);
         item.data(file, Table::named(&format!("{a},{b},E1max_J")).with(rows));
     }

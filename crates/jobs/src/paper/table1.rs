@@ -2,9 +2,10 @@
 //! window do its four rows have their four energies?
 
 use super::item::Item;
-use super::measures::{Spread, at_omega, energy, for_each, near};
+use super::measures::{Spread, at_omega, energy, near};
 use super::plan::{Plan, damper};
 use crate::Error;
+use crate::rows::of_each;
 use crate::tune::log::{csv_header, scientific};
 use rayon::prelude::*;
 use retune_dynamics::{Stretch, classify, follow};
@@ -34,7 +35,6 @@ const BESIDE: [f64; 5] = [-0.02, -0.01, 0.0, 0.01, 0.02];
 const BEFORE: [f64; 3] = [0.0, 0.25, 0.5];
 /// Designs of each median.
 const FEW: u32 = 51;
-/// Protocols that the table shows.
 const SHOWN: usize = 6;
 
 /// Designs within ±0.1 % of each row.
@@ -50,7 +50,6 @@ const ERRORS: [f64; 3] = [1e-1, 1e-2, 1e-3];
 const METHODS: [(Method, &str); 3] =
     [(Method::Ode23s, "2, stiff"), (Method::Ode23, "2(3), explicit"), (Method::Ode45, "5, explicit")];
 
-/// Makes Table 1.
 pub fn table1(plan: &Plan) -> Result<Item, Error> {
     let mut item = Item::new(plan.made_by("MATLAB's fminsearch algorithm with its default tolerances."));
     worth(plan, &mut item)?;
@@ -80,9 +79,7 @@ fn worth(plan: &Plan, item: &mut Item) -> Result<(), Error> {
         let of_digits = |digits| energy(&scene, plan.window(), &with(digits));
         let tolerances = Spread::of((6..=12).into_par_iter().map(of_digits).collect());
         let regime = classify(&follow(&scene, None, Stretch::default(), &plan.settings())?);
-        let mut cells = cells![i + 1];
-        cells.extend(design.map(Cell::Number));
-        cells.extend(cells![
+        let worth = cells![
             paper,
             format!("{:.1}", at_omega(plan, &scene)),
             format!("{:.1}", energy(&scene, plan.whole_run(), &plan.settings())),
@@ -90,8 +87,8 @@ fn worth(plan: &Plan, item: &mut Item) -> Result<(), Error> {
             format!("{:.1} – {:.1}", tolerances.least, tolerances.largest),
             regime.label(),
             format!("{:.2} ± {:.2}", regime.exponent.value, regime.exponent.error),
-        ]);
-        table.push(cells);
+        ];
+        table.push([cells![i + 1], design.map(Cell::Number).into(), worth].concat());
         spreads.push(near);
     }
     bar.finish();
@@ -120,11 +117,8 @@ fn worth(plan: &Plan, item: &mut Item) -> Result<(), Error> {
 /// What the paper leaves out.
 #[derive(Clone, Copy, PartialEq)]
 struct Protocol {
-    /// The radius of the damper's surfaces, m.
     radius: f64,
-    /// The frequency, rad/s.
     omega: f64,
-    /// The window of the maxima.
     window: Window,
 }
 
@@ -139,7 +133,6 @@ struct Outcome {
 }
 
 impl Protocol {
-    /// The study's own.
     fn own(plan: &Plan) -> Self {
         let omega = plan.ssvi.scene.forcing.frequency.get();
         Self { radius: plan.radius(), omega, window: plan.window() }
@@ -159,10 +152,17 @@ impl Protocol {
         let inside = printed().filter(|(row, printed)| row.holds(*printed)).count();
         Ok(Outcome { protocol: self, misfit: (squares / 4.0).sqrt(), inside, rows })
     }
+}
 
+impl Outcome {
     /// Its window as a cell.
-    fn window(self) -> String {
-        format!("{}–{}", self.window.from, self.window.to)
+    fn window(&self) -> String {
+        format!("{}–{}", self.protocol.window.from, self.protocol.window.to)
+    }
+
+    /// The medians of its rows as cells.
+    fn medians(&self, digits: usize) -> Vec<Cell> {
+        self.rows.iter().map(|row| Cell::Text(format!("{:.digits$}", row.median))).collect()
     }
 }
 
@@ -177,14 +177,13 @@ fn row(plan: &Plan, design: [f64; 4], others: &[(Parameter, f64)]) -> Result<Sce
 fn left_out(plan: &Plan, item: &mut Item) -> Result<(), Error> {
     let mut table = Table::headed("R, m | window, s | row 1, J | row 2, J | row 3, J | row 4, J");
     let printed = PAPER.map(|(_, printed)| Cell::Text(format!("{printed:.1}")));
-    table.push([cells!["the paper", ""], printed.to_vec()].concat());
+    table.push([cells!["the paper", ""], printed.into()].concat());
     let own = Protocol::own(plan);
     let whole = Protocol { window: plan.whole_run(), ..own };
     let radii = plan.other_radii().map(|radius| Protocol { radius, ..own });
     for protocol in [own, whole].into_iter().chain(radii) {
-        let medians =
-            protocol.run(plan)?.rows.into_iter().map(|row| Cell::Text(format!("{:.0}", row.median)));
-        table.push(cells![protocol.radius, protocol.window()].into_iter().chain(medians).collect());
+        let outcome = protocol.run(plan)?;
+        table.push([cells![protocol.radius, outcome.window()], outcome.medians(0)].concat());
     }
     item.table("Medians of E1max under ±0.1 %, for other radii and windows", table);
     Ok(())
@@ -193,35 +192,29 @@ fn left_out(plan: &Plan, item: &mut Item) -> Result<(), Error> {
 /// Adds the table of protocols and the statement that it decides.
 fn protocols(plan: &Plan, item: &mut Item) -> Result<(), Error> {
     let own = Protocol::own(plan);
-    let end = own.window.to;
+    let to = own.window.to;
     let mut wanted = Vec::new();
     for radius in RADII {
         for omega in BESIDE.map(|beside| own.omega + beside) {
-            let window = |share| Window { from: share * end, to: end };
+            let window = |share| Window { from: share * to, to };
             wanted.extend(BEFORE.map(|share| Protocol { radius, omega, window: window(share) }));
         }
     }
     let bar = plan.watch.progress("table 1, protocols", wanted.len() as u64);
-    let mut all = for_each(&wanted, |protocol| {
-        let outcome = protocol.run(plan);
-        bar.inc(1);
-        outcome
-    })?;
+    let mut all = of_each(&wanted, &*bar, |protocol| protocol.run(plan))?;
     bar.finish();
     all.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
+    let count = all.len();
     let mut table = Table::headed(
         "R, m | ω, rad/s | window, s | row 1, J | row 2, J | row 3, J | row 4, J | misfit, % | rows within ±0.1 %",
     );
-    let shown = all.iter().enumerate().filter(|(i, of)| *i < SHOWN || of.protocol == own);
-    for (_, Outcome { protocol, rows, misfit, inside }) in shown {
-        let mut cells = cells![protocol.radius, format!("{:.2}", protocol.omega), protocol.window()];
-        cells.extend(rows.iter().map(|spread| Cell::Text(format!("{:.1}", spread.median))));
-        cells.extend(cells![format!("{:.1}", 100.0 * misfit), format!("{inside} of 4")]);
-        table.push(cells);
+    for (_, of) in all.iter().enumerate().filter(|(i, of)| *i < SHOWN || of.protocol == own) {
+        let first = cells![of.protocol.radius, format!("{:.2}", of.protocol.omega), of.window()];
+        let last = cells![format!("{:.1}", 100.0 * of.misfit), format!("{} of 4", of.inside)];
+        table.push([first, of.medians(1), last].concat());
     }
     let caption = format!(
-        "Protocols that the paper may have used: medians of {FEW} designs within ±0.1 %, the {SHOWN} that fit best of {}, and ours",
-        all.len()
+        "Protocols that the paper may have used: medians of {FEW} designs within ±0.1 %, the {SHOWN} that fit best of {count}, and ours"
     );
     item.table(&caption, table);
     let most = all.iter().map(|of| of.inside).max().unwrap_or(0);
@@ -236,8 +229,7 @@ fn protocols(plan: &Plan, item: &mut Item) -> Result<(), Error> {
             _ => Verdict::Fails,
         },
         format!(
-            "of {} protocols {} put {most} rows within the spread, and none more; the best fits the medians to {:.1} %, ours to {:.1} %",
-            all.len(),
+            "of {count} protocols {} put {most} rows within the spread, and none more; the best fits the medians to {:.1} %, ours to {:.1} %",
             all.iter().filter(|of| of.inside == most).count(),
             100.0 * best,
             100.0 * ours
@@ -265,14 +257,13 @@ fn stiffness(plan: &Plan, item: &mut Item) -> Result<(), Error> {
         // The loosest tolerance from which on every tighter one comes as near: a lucky run does not count.
         let costs = ERRORS.map(|most| {
             let first = runs.iter().rposition(|(_, error, _)| *error > most).map_or(0, |last| last + 1);
-            runs.get(first).map(|&(rtol, _, evaluations)| (rtol, evaluations))
+            let cost = runs.get(first).map(|(rtol, _, count)| (*count, format!("{count} (rtol {rtol:e})")));
+            cost.unwrap_or((u64::MAX, "not reached".to_owned()))
         });
-        let cell = |cost: Option<(f64, u64)>| match cost {
-            Some((rtol, evaluations)) => Cell::Text(format!("{evaluations} (rtol {rtol:e})")),
-            None => "not reached".into(),
-        };
-        table.push(cells![method.name(), order].into_iter().chain(costs.map(cell)).collect());
-        all.push(costs.map(|cost| cost.map_or(u64::MAX, |(_, evaluations)| evaluations)));
+        table.push(
+            [cells![method.name(), order], costs.clone().map(|(_, words)| words.into()).into()].concat(),
+        );
+        all.push(costs.map(|(evaluations, _)| evaluations));
     }
     let cheaper = |other: usize| [0, 1, 2].map(|error| all[0][error] < all[other][error]);
     let count = |other: usize| cheaper(other).into_iter().filter(|is| *is).count();
@@ -314,21 +305,19 @@ fn search(plan: &Plan, start: [f64; 4], name: &str, item: &mut Item) -> Result<(
         Table::headed("iteration | procedure | k2 opt, N/m | c2 opt, N·s/m | D opt, m | C opt, m | E1max, J");
     let mut log = Table::named(&csv_header(&[], Measure::Energy));
     for (i, row) in rows.iter().enumerate() {
-        let [k2, c2, d, c] = design(row);
-        let procedure = row.procedure.to_string();
-        log.push(cells![row.iteration, row.func_count, procedure.clone(), k2, c2, d, c, row.value]);
+        let ([k2, c2, d, c], procedure) = (design(row), row.procedure.to_string());
+        log.push(cells![row.iteration, row.func_count, procedure.as_str(), k2, c2, d, c, row.value]);
         if i < 6 || i + 1 == rows.len() {
             let numbers = [k2, c2, d, c, row.value].map(|value| Cell::Text(scientific(value)));
-            table.push(cells![row.iteration, procedure].into_iter().chain(numbers).collect());
+            table.push([cells![row.iteration, procedure], numbers.into()].concat());
         }
     }
-    let caption = format!(
-        "Our fminsearch from {name}: {} iterations, {} evaluations, {}. First rows and last",
-        found.iterations,
-        found.func_count,
-        if found.stop == Stop::Converged { "converged" } else { "stopped at a limit" }
+    let (iterations, evaluations) = (found.iterations, found.func_count);
+    let end = if found.stop == Stop::Converged { "converged" } else { "stopped at a limit" };
+    item.table(
+        &format!("Our fminsearch from {name}: {iterations} iterations, {evaluations} evaluations, {end}. First rows and last"),
+        table,
     );
-    item.table(&caption, table);
     item.data(&format!("table1-from-{}", name.replace(' ', "-")), log);
     Ok(())
 }

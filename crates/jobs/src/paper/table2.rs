@@ -1,7 +1,7 @@
 //! Table 2: both dampers tuned again, and in which sense the paper's rows are optimal.
 
 use super::item::Item;
-use super::measures::{Ladder, at_omega, energy, finest, ladder_table, over_band, sampled};
+use super::measures::{Ladder, Spread, at_omega, energy, finest, ladder_table, over_band, sampled};
 use super::plan::{Plan, Tuner, damper};
 use crate::Error;
 use retune_model::{Design, Parameter, PerVariable, Scene};
@@ -11,12 +11,8 @@ use retune_report::document::Verdict;
 use retune_report::table::{Cell, Column, Table};
 use retune_study::{Coarse, Optimize, Refine, Setting, Study};
 
-/// The best node of Figure 2's surface over k2 and c2, rounded: another start for the SSVI NES.
-const STIFFER: [(Parameter, f64); 2] = [(Parameter::K2, 500.0), (Parameter::C2, 160.0)];
 /// Samples of the band while the SSVI NES is tuned; the TMD's steady response is exact.
 const SAMPLES: usize = 31;
-/// Largest stiffness of a spring, N/m: that of the paper's TMD, its stiffest.
-const STIFFEST: f64 = 600.0;
 
 /// A damper, as a row of the table.
 struct Row {
@@ -31,42 +27,22 @@ struct Row {
     printed: f64,
 }
 
-/// A search for a row.
-#[derive(Clone, Copy)]
-struct Search {
-    /// The name of its results.
-    name: &'static str,
-    /// Whether designs are compared by the worst over ω, or else at ω = 6.28.
-    is_worst: bool,
-    /// How its start differs from the paper's row.
-    start: &'static [(Parameter, f64)],
-    /// The bound on k2, if it is not twenty times the start, N/m.
-    most_k2: Option<f64>,
-}
-
-const fn search(name: &'static str, is_worst: bool) -> Search {
-    Search { name, is_worst, start: &[], most_k2: None }
-}
-
-/// The rows: the damper, the origin of its design in words, and the search that comes to it unless it is the paper's.
-const ROWS: [(&str, &str, Option<Search>); 8] = [
+/// The rows: the damper, the origin of its design in words, and the name of the search that comes to it unless it is the paper's.
+const ROWS: [(&str, &str, Option<&str>); 8] = [
     (SSVI, "the paper's", None),
-    (SSVI, "re-optimised, ω = 6.28", Some(search("ssvi-one-omega", false))),
-    (SSVI, "re-optimised, worst ω", Some(search("ssvi-worst", true))),
-    (
-        SSVI,
-        "from Figure 2's best node, worst ω",
-        Some(Search { start: &STIFFER, ..search("ssvi-stiffer", true) }),
-    ),
+    (SSVI, "re-optimised, ω = 6.28", Some("ssvi-one-omega")),
+    (SSVI, "re-optimised, worst ω", Some("ssvi-worst")),
+    (SSVI, "from Figure 2's best node, worst ω", Some(STIFFER)),
     (TMD, "the paper's", None),
-    (TMD, "worst ω, k2 at most 600", Some(Search { most_k2: Some(STIFFEST), ..search("tmd-bounded", true) })),
-    (TMD, "re-optimised, worst ω", Some(search("tmd-worst", true))),
-    (TMD, "re-optimised, ω = 6.28", Some(search("tmd-one-omega", false))),
+    (TMD, "worst ω, k2 at most 600", Some(BOUNDED)),
+    (TMD, "re-optimised, worst ω", Some("tmd-worst")),
+    (TMD, "re-optimised, ω = 6.28", Some("tmd-one-omega")),
 ];
 const SSVI: &str = "SSVI NES";
 const TMD: &str = "TMD";
+const STIFFER: &str = "ssvi-stiffer";
+const BOUNDED: &str = "tmd-bounded";
 
-/// Makes Table 2.
 pub fn table2(plan: &Plan, tuned: &mut Tuner) -> Result<Item, Error> {
     let mut item = Item::new(plan.made_by("fminsearch from the paper's rows, parameters scaled by the start, each between 0 and 20 times its start, at most 400 evaluations at one frequency and 150 (SSVI NES) or 400 (TMD) in the worst case; worst case: tuned over ω in 5–8 rad/s, the SSVI NES by its coarse samples, the TMD in closed form; in the tables the largest E1max on the frequencies of Figure 3, those of its last column where nothing else is said. Each search is a study with results of its own, below table2/."));
     let bar = plan.watch.progress("table 2", ROWS.len() as u64);
@@ -75,7 +51,7 @@ pub fn table2(plan: &Plan, tuned: &mut Tuner) -> Result<Item, Error> {
         let base = if name == TMD { &plan.tmd } else { &plan.ssvi };
         let design = match search {
             None => Design::of(&damper(base)?),
-            Some(search) => tuned(&search.study(base, name)?)?,
+            Some(search) => tuned(&searched(base, name, search)?)?,
         };
         let scene = base.scene_at(&design).ok_or_else(|| Error::NoStart(Failures::default()))?;
         let as_printed = Design::new(|variable| printed(design.get(variable)));
@@ -88,10 +64,21 @@ pub fn table2(plan: &Plan, tuned: &mut Tuner) -> Result<Item, Error> {
         bar.inc(1);
     }
     bar.finish();
-    item.table("Designs and what they are worth, by three objectives", table(&rows));
+    let designs = rows.iter().map(|Row { damper, origin, design, worth, .. }| {
+        let values = design.values().map(|value| Cell::Number(printed(value)));
+        let worth = worth.map(|value| Cell::Text(format!("{value:.1}")));
+        [cells![*damper, *origin], values.into(), worth.into()].concat()
+    });
+    let head = "damper | origin | k2, N/m | c2, N·s/m | D, m | C, m | E1max at ω = 6.28, J | whole run, J | worst E1max over ω, finest, J";
+    item.table("Designs and what they are worth, by three objectives", Table::headed(head).with(designs));
+    let mut ladders = ladder_table(plan, "damper | origin");
+    ladders.columns.push(Column::new(format!("as printed, {} ω, J", finest(plan)), ""));
+    for Row { damper, origin, ladder, printed, .. } in &rows {
+        ladders.push([cells![*damper, *origin], ladder.cells(), cells![format!("{printed:.1}")]].concat());
+    }
     item.table(
         "The worst over ω on ever finer frequencies (Figure 3's), of designs near, and of the design as printed above",
-        ladders(plan, &rows),
+        ladders,
     );
     let bare = at_omega(plan, &Scene { damper: None, ..plan.ssvi.scene });
     if let Ok(rows) = <&[Row; 8]>::try_from(&rows[..]) {
@@ -100,67 +87,43 @@ pub fn table2(plan: &Plan, tuned: &mut Tuner) -> Result<Item, Error> {
     Ok(item)
 }
 
-impl Search {
-    /// Its study, which starts at the design of the paper's or near it.
-    fn study(&self, base: &Study, name: &str) -> Result<Study, Error> {
-        let settings: Vec<Setting> =
-            self.start.iter().map(|&(parameter, value)| Setting::new(parameter, value)).collect();
-        let base = base.with(&settings)?;
-        let start = damper(&base)?;
-        let (vary, response, evaluations) = match name {
-            TMD => (&[Parameter::K2, Parameter::C2][..], Response::Steady, 400),
-            _ => (&Parameter::PAPER[..], Response::Window, 150),
-        };
-        let (objective, evaluations) = if self.is_worst {
-            (over_band(SAMPLES, response), evaluations)
-        } else {
-            (Objective::default(), 400)
-        };
-        let mut bounds = PerVariable::default();
-        for &variable in vary {
-            let most = self.most_k2.filter(|_| variable == Parameter::K2);
-            bounds.set(variable, Some((0.0, Some(most.unwrap_or(20.0 * variable.get(&start))))));
-        }
-        let optimize = Optimize {
-            vary: vary.to_vec(),
-            objective,
-            bounds,
-            limits: Limits::default(),
-            surf: None,
-            coarse: Coarse::default(),
-            global: None,
-            starts: Vec::new(),
-            refine: Refine { scaled: true, max_fun_evals: Some(evaluations), ..Refine::default() },
-        };
-        Ok(Study { name: Some(self.name.to_owned()), optimize: Some(optimize), ..base })
+/// The study of a search, which starts at the design of the paper's or near it.
+fn searched(base: &Study, damper_name: &str, search: &str) -> Result<Study, Error> {
+    // The best node of Figure 2's surface over k2 and c2, rounded.
+    let stiffer = [Setting::new(Parameter::K2, 500.0), Setting::new(Parameter::C2, 160.0)];
+    let base = base.with(if search == STIFFER { &stiffer } else { &[] })?;
+    let start = damper(&base)?;
+    let (vary, response, evaluations) = match damper_name {
+        TMD => (&[Parameter::K2, Parameter::C2][..], Response::Steady, 400),
+        _ => (&Parameter::PAPER[..], Response::Window, 150),
+    };
+    let (objective, evaluations) = match search {
+        "ssvi-one-omega" | "tmd-one-omega" => (Objective::default(), 400),
+        _ => (over_band(SAMPLES, response), evaluations),
+    };
+    let mut bounds = PerVariable::default();
+    for &variable in vary {
+        // N/m: that of the paper's TMD, its stiffest.
+        let most = (search == BOUNDED && variable == Parameter::K2).then_some(600.0);
+        bounds.set(variable, Some((0.0, Some(most.unwrap_or(20.0 * variable.get(&start))))));
     }
+    let optimize = Optimize {
+        vary: vary.to_vec(),
+        objective,
+        bounds,
+        limits: Limits::default(),
+        surf: None,
+        coarse: Coarse::default(),
+        global: None,
+        starts: Vec::new(),
+        refine: Refine { scaled: true, max_fun_evals: Some(evaluations), ..Refine::default() },
+    };
+    Ok(Study { name: Some(search.to_owned()), optimize: Some(optimize), ..base })
 }
 
 /// A value as the table prints it.
 fn printed(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
-}
-
-/// What the worst cases are worth, and what the rounding of the printed design does to them.
-fn ladders(plan: &Plan, rows: &[Row]) -> Table {
-    let mut table = ladder_table(plan, "damper | origin");
-    table.columns.push(Column::new(format!("as printed, {} ω, J", finest(plan)), ""));
-    for Row { damper, origin, ladder, printed, .. } in rows {
-        table.push([cells![*damper, *origin], ladder.cells(), cells![format!("{printed:.1}")]].concat());
-    }
-    table
-}
-
-fn table(rows: &[Row]) -> Table {
-    let mut table = Table::headed(
-        "damper | origin | k2, N/m | c2, N·s/m | D, m | C, m | E1max at ω = 6.28, J | whole run, J | worst E1max over ω, finest, J",
-    );
-    for Row { damper, origin, design, worth, .. } in rows {
-        let values = design.values().map(|value| Cell::Number(printed(value)));
-        let worth = worth.map(|value| Cell::Text(format!("{value:.1}")));
-        table.push(cells![*damper, *origin].into_iter().chain(values).chain(worth).collect());
-    }
-    table
 }
 
 /// Values that differ by no more than this share count as equal: the rows are printed to two or three digits.
@@ -178,15 +141,14 @@ fn statements(rows: &[Row; 8], bare: f64, item: &mut Item) {
         format!("E1max {own:.0} J; a design close by reaches {least:.0} J at this frequency, but {elsewhere:.0} J at its worst"),
     );
     let (scatter, [_, _, tuned]) = (&ssvi.ladder.near, at_all.worth);
-    let is_better = tuned.min(stiffer.worth[2]) < scatter.least;
+    let Spread { least, largest, .. } = *scatter;
+    let is_better = tuned.min(stiffer.worth[2]) < least;
     item.statement(
         "The SSVI NES's row is optimal: no smaller worst case over ω",
         "Fails if a design is better by more than the scatter, the least of 21 designs within ±0.1 % of the row. Otherwise in part: the search is local and coarse, so it cannot show that nothing better exists.",
         if is_better { Verdict::Fails } else { Verdict::Partly },
         format!(
-            "worst case {worst:.0} J, within ±0.1 % from {:.0} J to {:.0} J; tuned for it from there {tuned:.0} J, from the best node of Figure 2 {}, which is the design to cite",
-            scatter.least,
-            scatter.largest,
+            "worst case {worst:.0} J, within ±0.1 % from {least:.0} J to {largest:.0} J; tuned for it from there {tuned:.0} J, from the best node of Figure 2 {}, which is the design to cite",
             stiffer.ladder.words()
         ),
     );

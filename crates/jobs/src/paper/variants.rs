@@ -22,7 +22,6 @@ const LADDER: usize = 301;
 const MOTIONS: usize = 41;
 const POINTS: usize = 36;
 
-/// A figure of the paper.
 type Figure = fn(&Plan) -> Result<Item, Error>;
 const FIGURES: [(&str, Figure); 6] = [
     ("Figure 2", surfaces::figure2),
@@ -40,7 +39,6 @@ struct Verdicts {
     all: Vec<Verdict>,
 }
 
-/// Makes the table.
 pub fn figures(plan: &Plan) -> Result<Item, Error> {
     let mut item = Item::new(plan.made_by(&format!(
         "All figures again, with only what is named changed, on fewer points: worst cases on {LADDER} frequencies at most, maps with a quarter of the nodes, motions at {MOTIONS} frequencies."
@@ -79,8 +77,8 @@ pub fn figures(plan: &Plan) -> Result<Item, Error> {
     let names: Vec<&str> = settings.iter().map(|(name, _)| name.as_str()).collect();
     let mut table = Table::headed(&format!("figure | statement | {}", joined(&names, " | ")));
     for Verdicts { figure, paper, all } in &verdicts {
-        let words = all.iter().map(|verdict| Cell::from(verdict.words()));
-        table.push(cells![*figure, paper.as_str()].into_iter().chain(words).collect());
+        let words = all.iter().map(|verdict| Cell::from(verdict.words())).collect();
+        table.push([cells![*figure, paper.as_str()], words].concat());
     }
     let caption =
         "Verdicts under other radii, windows and losses of contacts: one at a time, the rest as in the study";
@@ -114,13 +112,8 @@ fn summary(verdicts: &[Verdicts]) -> String {
             changing.push(format!("{figure}, \u{201c}{paper}\u{201d}: {}", joined(&counts, ", ")));
         }
     }
-    let whole = format!(
-        "Of {} verdicts {} are the same under all of these settings.",
-        verdicts.len(),
-        verdicts.len() - changing.len()
-    );
-    match changing.as_slice() {
-        [] => whole,
-        changing => format!("{whole} These are not: {}.", joined(changing, "; ")),
-    }
+    let (count, same) = (verdicts.len(), verdicts.len() - changing.len());
+    let others =
+        if changing.is_empty() { "" } else { &format!(" These are not: {}.", joined(&changing, "; ")) };
+    format!("Of {count} verdicts {same} are the same under all of these settings.{others}")
 }

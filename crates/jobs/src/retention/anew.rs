@@ -1,73 +1,62 @@
 //! The searches of `retention`: a damper tuned for the k1 of its study, for others, and for the worst over all of them.
 
-use super::tuned::{Kept, Tuned, Tuning, energy, label, over};
+use super::tuned::{Tuned, Tuning, energy, label, over};
+use crate::Error;
 use crate::designs::Row;
 use crate::fronts::SAME;
 use crate::pages::over as over_band;
 use crate::searches::Searches;
 use crate::tune::{Found, Optimum};
-use crate::{Error, Observer};
 use retune_model::{Design, Parameter};
 use retune_study::{PaperStudy, Setting, SpringBounds, Study, Table2, short};
 
 /// Tunes one damper for the stiffness of its study, then for each of `others`, upwards from there, then downwards, and last for the worst
 /// over all of them. The rows say what each search found.
-///
-/// # Errors
-/// A search fails.
 pub(super) fn tune(
     PaperStudy { damper: name, study, .. }: &PaperStudy,
     said: &Table2,
     others: &[f64],
     searches: &mut Searches,
-    watch: &dyn Observer,
 ) -> Result<(Tuned, Vec<Row>), Error> {
     let nominal = study.scene.primary.stiffness.get();
-    let mut rows = Vec::new();
+    let mut found: Vec<(f64, Design, Row)> = Vec::new();
     let mut at = |k1: f64, neighbour: Option<(f64, Design)>| -> Result<Design, Error> {
         let study = anew(study, k1, neighbour, said.k2_bounds)?;
         let warm = if neighbour.is_some() { ", and from the design of the k1 beside it" } else { "" };
         let natural = short(study.scene.primary.natural_frequency());
-        watch.log(&format!(
+        searches.watch.log(&format!(
             "\n{name} at k1 = {k1} N/m (natural frequency {natural} rad/s), {}{warm}",
             over_band(&study)
         ))?;
-        let optimum = searched(study.clone(), said.samples, &format!("k1-{k1}"), searches, watch)?;
-        rows.push((k1, Row::of_optimum(&label(k1), name, &study, &optimum)));
-        Ok(optimum.found().damper.design_of(study.varied()))
+        let optimum = searched(study.clone(), said.samples, &format!("k1-{k1}"), searches)?;
+        let design = optimum.found().damper.design_of(study.varied());
+        found.push((k1, design, Row::of_optimum(&label(k1), name, &study, &optimum)));
+        Ok(design)
     };
     let first = at(nominal, None)?;
-    let mut designs = vec![(nominal, first)];
     let (mut below, above): (Vec<f64>, Vec<f64>) = others.iter().partition(|k1| **k1 < nominal);
     below.reverse();
     for outwards in [above, below] {
         let mut neighbour = (nominal, first);
         for k1 in outwards.into_iter().filter(|k1| *k1 != nominal) {
             neighbour = (k1, at(k1, Some(neighbour))?);
-            designs.push(neighbour);
         }
     }
-    designs.sort_by(|a, b| a.0.total_cmp(&b.0));
-    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut rows: Vec<Row> = rows.into_iter().map(|(_, row)| row).collect();
-    let mut kept = Vec::new();
-    kept.extend(
-        study
-            .scene
-            .damper
-            .map(|damper| Kept { tuning: Tuning::Paper, at: Design::of_varied(&damper, study.varied()) }),
-    );
-    kept.push(Kept { tuning: Tuning::Nominal, at: first });
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (designs, mut rows): (Vec<_>, Vec<_>) =
+        found.into_iter().map(|(k1, design, row)| ((k1, design), row)).unzip();
+    let mut tuned = Tuned::new(name.clone(), study.clone(), said.samples);
+    let paper = study.scene.damper.map(|damper| Design::of_varied(&damper, study.varied()));
+    tuned.kept.extend(paper.map(|at| (Tuning::Paper, at)));
+    tuned.kept.push((Tuning::Nominal, first));
     if designs.len() > 1 {
-        let study = robust(study, &designs)?;
-        watch.log(&format!("\n{name} for all k1, {}", over_band(&study)))?;
-        let optimum = searched(study.clone(), said.samples, Tuning::Robust.name(), searches, watch)?;
-        rows.push(Row::of_optimum(Tuning::Robust.name(), name, &study, &optimum));
-        kept.push(Kept { tuning: Tuning::Robust, at: optimum.found().damper.design_of(study.varied()) });
+        let (study, name) = (robust(study, &designs)?, Tuning::Robust.name());
+        searches.watch.log(&format!("\n{} for all k1, {}", tuned.name, over_band(&study)))?;
+        let optimum = searched(study.clone(), said.samples, name, searches)?;
+        rows.push(Row::of_optimum(name, &tuned.name, &study, &optimum));
+        tuned.kept.push((Tuning::Robust, optimum.found().damper.design_of(study.varied())));
     }
-    let tuned =
-        Tuned { name: name.clone(), study: study.clone(), samples: said.samples, kept, anew: designs };
-    Ok((tuned, rows))
+    Ok((Tuned { anew: designs, ..tuned }, rows))
 }
 
 /// Makes the search of a study. Where its design rises on the samples on which all are compared, the design is refined on these: the search
@@ -77,10 +66,9 @@ fn searched(
     samples: Option<usize>,
     place: &str,
     searches: &mut Searches,
-    watch: &dyn Observer,
 ) -> Result<Optimum, Error> {
     let optimum = searches.tune(&study, place)?;
-    watch.log(&optimum.report())?;
+    searches.watch.log(&optimum.report())?;
     let Found { damper, e1_max } = optimum.found();
     let own = study.scene.primary.stiffness.get();
     let rises = |again: f64| again > (1.0 + SAME) * e1_max;
@@ -95,9 +83,11 @@ fn searched(
             band.samples = samples.unwrap_or(band.samples);
         }
     }
-    watch.log(&format!("refined on {} frequencies, on which it rises", samples.unwrap_or_default()))?;
+    searches
+        .watch
+        .log(&format!("refined on {} frequencies, on which it rises", samples.unwrap_or_default()))?;
     let optimum = searches.tune(&study, &format!("{place}-finer"))?;
-    watch.log(&optimum.report())?;
+    searches.watch.log(&optimum.report())?;
     Ok(optimum)
 }
 

@@ -3,7 +3,7 @@
 use super::force::Forced;
 use super::retained::Retained;
 use super::trade::Point;
-use super::tuned::{Tuned, Tuning};
+use super::tuned::{OWN, Tuned, Tuning};
 use crate::columns::{column, of_designs, symbols};
 use crate::pages::{figure, made_by};
 use retune_model::{Design, Parameter};
@@ -29,35 +29,33 @@ const fn line(tuning: Tuning) -> Stroke {
     match tuning {
         Tuning::Paper => Stroke::new(PURPLE, 1.1, Dash::DashDot),
         Tuning::Nominal => Stroke::new(VERMILION, 1.1, Dash::Long),
-        Tuning::Robust => Stroke::solid(GREEN),
+        _ => Stroke::solid(GREEN),
     }
 }
 
 /// E1max against k1: a chart for each damper; with the band of each structure, or with that of the nominal k1.
-pub(super) fn retention(retained: &Retained, still: bool) -> Drawing {
-    let shown = retained.shown();
-    let curves = || retained.curves.iter().filter(move |curve| curve.still == still);
+pub(super) fn retention(retained: &Retained, band: usize) -> Drawing {
+    let curves = || retained.curves.iter().filter(move |curve| curve.band == band);
     let values = curves().flat_map(|curve| curve.points.iter().map(|(_, value)| *value));
     let energies = Axis::around("worst E1max, J", Scale::Log, values);
-    let none: Vec<(f64, f64)> =
-        curves().filter(|curve| curve.damper.is_none()).flat_map(|curve| curve.points.clone()).collect();
+    let bare = curves().filter(|curve| curve.damper.is_none());
+    let none: Vec<(f64, f64)> = bare.flat_map(|curve| curve.points.clone()).collect();
     let k1 = || none.iter().map(|(k1, _)| *k1);
     let mut above: Vec<String> = Vec::new();
     let mut chart = |&number: &usize| {
         let damper = &retained.dampers[number];
-        let mut layers = vec![Layer::Line { points: none.clone(), stroke: NONE }];
-        if let (Some(criterion), false) = (retained.criteria.get(number), still) {
-            let points = k1().map(|k1| (k1, criterion.threshold.at(k1))).collect();
-            layers.push(Layer::Line { points, stroke: HALF });
+        let mut layers = vec![Layer::line(none.clone(), NONE)];
+        if band == OWN {
+            layers.push(Layer::line(k1().map(|k1| (k1, damper.thresholds[OWN].at(k1))), HALF));
         }
         for curve in curves().filter(|curve| curve.damper == Some(number)) {
             let points = curve.points.clone();
             layers.push(match curve.tuning {
-                Some(tuning) => Layer::Line { points, stroke: line(tuning) },
-                None => Layer::Marks { points, mark: ANEW },
+                Tuning::Anew => Layer::Marks { points, mark: ANEW },
+                tuning => Layer::line(points, line(tuning)),
             });
         }
-        let higher = if still { Vec::new() } else { above_nominal(damper) };
+        let higher = if band == OWN { above_nominal(damper) } else { Vec::new() };
         if !higher.is_empty() {
             let k1: Vec<String> = higher.iter().map(|(k1, _)| short(*k1)).collect();
             above.push(format!("{} at {}", damper.name, k1.join(" and ")));
@@ -66,20 +64,13 @@ pub(super) fn retention(retained: &Retained, still: bool) -> Drawing {
         let chart = Chart::of(along_k1(k1()), energies.clone(), layers, 170.0);
         Chart { title: damper.name.clone(), ..chart }
     };
-    let charts: Vec<Chart> = shown.iter().map(&mut chart).collect();
+    let charts: Vec<Chart> = retained.shown().iter().map(&mut chart).collect();
+    let own = |key, words: &str| (band == OWN).then(|| (key, words.to_owned()));
     let mut legend = vec![(Key::Line(NONE), "no damper".to_owned())];
-    if !still {
-        let half = "half of the reduction, in dB, of the best TMD for each k1".to_owned();
-        legend.push((Key::Line(HALF), half));
-    }
-    for tuning in Tuning::ALL {
-        if curves().any(|curve| curve.tuning == Some(tuning)) {
-            legend.push((Key::Line(line(tuning)), tuning.name().to_owned()));
-        }
-    }
-    if !still {
-        legend.push((Key::Mark(ANEW), "re-tuned for each k1".to_owned()));
-    }
+    legend.extend(own(Key::Line(HALF), "half of the reduction, in dB, of the best TMD for each k1"));
+    let kept = Tuning::KEPT.into_iter().filter(|tuning| curves().any(|curve| curve.tuning == *tuning));
+    legend.extend(kept.map(|tuning| (Key::Line(line(tuning)), tuning.name().to_owned())));
+    legend.extend(own(Key::Mark(ANEW), "re-tuned for each k1"));
     let mut caption = Vec::new();
     if !above.is_empty() {
         legend.push((Key::Mark(ABOVE), "re-tuned above nominal".to_owned()));
@@ -88,7 +79,7 @@ pub(super) fn retention(retained: &Retained, still: bool) -> Drawing {
             above.join("; ")
         ));
     }
-    let band = if still { "the band of the nominal k1" } else { "each structure's own band" };
+    let band = if band == OWN { "each structure's own band" } else { "the band of the nominal k1" };
     let description = format!(
         "E1max, worst over {band}, against the stiffness k1 of the structure, a chart for each damper"
     );
@@ -120,7 +111,7 @@ pub(super) fn path(retained: &Retained) -> Drawing {
             let (stroke, mark) = style(number);
             // Designs may exchange the roles of D and C from one k1 to the next: a line between would show what is not there.
             if !variable.is_gap() {
-                layers.push(Layer::Line { points: points(damper), stroke });
+                layers.push(Layer::line(points(damper), stroke));
             }
             layers.push(Layer::Marks { points: points(damper), mark });
         }
@@ -152,43 +143,33 @@ pub(super) fn range(retained: &Retained) -> Drawing {
     let fronts: Vec<(usize, Vec<&Point>)> =
         shown.iter().map(|&damper| (damper, retained.front(damper))).collect();
     let is_front = |point: &Point| {
-        fronts
-            .iter()
-            .any(|(damper, front)| *damper == point.damper && front.iter().any(|other| other.at == point.at))
+        let mut fronts = fronts.iter().flat_map(|(_, front)| front);
+        fronts.any(|other| other.damper == point.damper && other.at == point.at)
     };
     let dominated: Vec<(f64, f64)> =
         points.iter().filter(|point| !is_front(point)).map(|point| at(point)).collect();
-    let any_dominated = !dominated.is_empty();
+    let last = (!dominated.is_empty()).then(|| (Key::Mark(DOMINATED), "found, but dominated".to_owned()));
     let mut layers = vec![Layer::Marks { points: dominated, mark: DOMINATED }];
     let mut legend = Vec::new();
     for (damper, front) in fronts.iter().filter(|(_, front)| !front.is_empty()) {
         let (stroke, mark) = style(*damper);
         let points: Vec<(f64, f64)> = front.iter().map(|point| at(point)).collect();
-        layers.push(Layer::Line { points: points.clone(), stroke });
+        layers.push(Layer::line(points.clone(), stroke));
         let small = Mark { size: 3.0, ..mark };
         layers.push(Layer::Marks { points, mark: small });
         legend.push((Key::Marked(stroke, small), retained.name(*damper).to_owned()));
     }
-    for tuning in Tuning::ALL {
-        let shape = match tuning {
-            Tuning::Paper => Shape::Cross,
-            Tuning::Nominal => Shape::Triangle,
-            Tuning::Robust => Shape::Frame,
-        };
+    let shapes = [Shape::Cross, Shape::Triangle, Shape::Frame];
+    for (tuning, shape) in Tuning::KEPT.into_iter().zip(shapes) {
         let mark = |colour| Mark { rim: true, ..Mark::new(shape, colour, 7.0) };
-        let own = || kept.iter().filter(|point| point.tuning == Some(tuning) && point.range.is_some());
-        if own().next().is_some() {
-            legend.push((Key::Mark(mark(BLACK)), tuning.name().to_owned()));
-        }
-        layers.extend(own().map(|point| {
-            let (colour, _) = DAMPERS[point.damper % DAMPERS.len()];
-            Layer::Marks { points: vec![at(point)], mark: mark(colour) }
-        }));
+        let own = || kept.iter().filter(|point| point.tuning == tuning && point.range().is_some());
+        legend.extend(own().next().map(|_| (Key::Mark(mark(BLACK)), tuning.name().to_owned())));
+        let colour = |point: &Point| style(point.damper).1.colour;
+        let marks = |point: &&Point| Layer::Marks { points: vec![at(point)], mark: mark(colour(point)) };
+        layers.extend(own().map(marks));
     }
-    if any_dominated {
-        legend.push((Key::Mark(DOMINATED), "found, but dominated".to_owned()));
-    }
-    let all = || points.iter().chain(&kept).filter(|point| point.range.is_some());
+    legend.extend(last);
+    let all = || points.iter().chain(&kept).filter(|point| point.range().is_some());
     let right = all().map(|point| point.factor()).fold(0.0, f64::max);
     let right = if right > 1.0 { 1.0 + 1.05 * (right - 1.0) } else { 2.0 };
     let x = Axis::linear("factor by which k1 may rise and fall", (1.0, right));
@@ -221,7 +202,7 @@ pub(super) fn force(retained: &Retained) -> Drawing {
     let legend = all().map(key).collect();
     let x = Axis::linear("P, N", (0.0, if right > 0.0 { 1.03 * right } else { 1.0 }));
     let y = Axis::linear("E1max / without a damper", (0.0, if top > 0.0 { 1.08 * top } else { 1.0 }));
-    let layers = all().map(|of| Layer::Line { points: points(of), stroke: stroke(of) }).collect();
+    let layers = all().map(|of| Layer::line(points(of), stroke(of))).collect();
     let description = "The worst E1max of the nominal designs at the nominal k1, as a share of that without a damper, against the amplitude P of the force"
         .to_owned();
     let sheet = Sheet::of("What a smaller force leaves of a tuning", vec![Chart::of(x, y, layers, 170.0)]);

@@ -45,13 +45,12 @@ impl Forced {
 pub fn forced(dampers: &[Tuned]) -> Vec<Forced> {
     let mut all = Vec::new();
     for (number, damper) in dampers.iter().enumerate() {
-        let (Some(at), Some(own)) = (damper.of(Tuning::Nominal), damper.study.value_of(Parameter::P)) else {
-            continue;
-        };
+        let (at, study) = (damper.of(Tuning::Nominal), damper.study());
+        let Some((at, own)) = at.zip(study.value_of(Parameter::P)) else { continue };
         let series = |gaps: &str| {
             let one = |step: i32| {
                 let force = own * 2_f64.powf(-0.25 * f64::from(step));
-                (force, under(&damper.study, damper.samples, &at, gaps, force).unwrap_or([f64::NAN; 2]))
+                (force, under(study, damper.samples, &at, gaps, force).unwrap_or([f64::NAN; 2]))
             };
             let proportional = gaps == GAPS[1];
             Forced { damper: number, proportional, points: (0..=STEPS).into_par_iter().map(one).collect() }
@@ -77,7 +76,6 @@ pub fn under(study: &Study, samples: Option<usize>, at: &Design, gaps: &str, for
     Some([energy(&study, samples, &at, own)?, bare(&study, own)?])
 }
 
-/// A row for each force.
 pub fn table(dampers: &[Tuned], all: &[Forced]) -> Table {
     let mut table = columns::table(&["damper", "gaps", "P", "E1max"]);
     table.columns.push(Column::new("none", Measure::Energy.unit()));

@@ -1,34 +1,31 @@
-//! The page of `retention`, which begins with its answer. Every number on it is one of the tables beside it.
+//! The page of `retention`. It begins with its answer, as the screen does: who keeps its work, at equal performance at home, under the same bound
+//! on k2, and under a smaller force. Every number is one of the tables beside the page.
 
-use super::curves::ANEW;
+use super::curves::{Curve, cliffs};
 use super::draw;
 use super::force::{Forced, GAPS, HALF};
-use super::opening::{answer, joule};
 use super::range::Range;
-use super::retained::Retained;
+use super::retained::{EQUAL, Retained};
 use super::trade::Point;
-use super::tuned::{CURVES, DESIGNS, FORCES, Tuning};
+use super::tuned::{CURVES, DESIGNS, FORCES, OWN, RANGES, STILL, Tuning};
 use crate::designs::Row;
+use crate::fronts::SAME;
 use crate::{Error, pages};
-use retune_model::{Measure, Parameter};
+use retune_model::{Design, Measure, Parameter};
 use retune_report::document::{Block, Document};
 use retune_store::Directory;
 use retune_study::{SpringBounds, design_words, rounded, short};
 
-/// Writes the page in both forms, and its figures.
-///
-/// # Errors
-/// A file cannot be written.
 pub(super) fn write(retained: &Retained, directory: &Directory) -> Result<(), Error> {
     let words = "E1max, worst over each structure's own band, against its stiffness";
     let mut energy = vec![
-        Block::figure("retention.svg", draw::retention(retained, false), words),
+        Block::figure("retention.svg", draw::retention(retained, OWN), words),
         worst(retained),
-        cliffs(retained),
+        jumps(retained),
     ];
-    if retained.curves.iter().any(|curve| curve.still) {
+    if retained.curves.iter().any(|curve| curve.band == STILL) {
         let words = "The same with the band of frequencies where it is at the nominal k1";
-        energy.push(Block::figure("still.svg", draw::retention(retained, true), words));
+        energy.push(Block::figure("still.svg", draw::retention(retained, STILL), words));
     }
     let words = "The least E1max at the nominal k1 against the retention range";
     let range = vec![
@@ -41,7 +38,7 @@ pub(super) fn write(retained: &Retained, directory: &Directory) -> Result<(), Er
     let force = vec![Block::figure("force.svg", draw::force(retained), words), forces(retained)];
     let words = "The re-tuned designs against k1";
     let designs = vec![designs(retained), Block::figure("path.svg", draw::path(retained), words)];
-    let files = [DESIGNS, CURVES, "range.csv", FORCES, "resolved.json", "manifest.json"];
+    let files = [DESIGNS, CURVES, RANGES, FORCES, "resolved.json", "manifest.json"];
     let page = Document {
         title: "How long a tuning lasts".to_owned(),
         command: "retune retention",
@@ -65,14 +62,13 @@ const RULE: &str = "A damper does its work at a stiffness k1 if its reduction, 1
 /// What is to be added where the dampers do not all have one mass.
 const MASS: &str = " Where m2 is varied, this TMD has the mass of the damper in the study.";
 
-/// What was compared.
 fn compared(Retained { dampers, bounds, .. }: &Retained) -> String {
     let Some(first) = dampers.first() else { return String::new() };
     let samples = first.samples.map(|samples| format!(" on {samples} frequencies")).unwrap_or_default();
     format!(
         "Each design is compared by its E1max, {}{samples}, at each stiffness k1 of the structure. The nominal k1 is {} N/m; a k1-robust design is \
          tuned for the worst over {} N/m, a re-tuned one for each of them, with bounds on k2 {}.",
-        pages::over(&first.study),
+        pages::over(first.study()),
         short(first.nominal()),
         retune_study::joined(&first.anew.iter().map(|(k1, _)| short(*k1)).collect::<Vec<_>>(), ", "),
         match bounds {
@@ -82,21 +78,158 @@ fn compared(Retained { dampers, bounds, .. }: &Retained) -> String {
     )
 }
 
+/// The answer: what the title asks first, then a line for each damper.
+pub(super) fn answer(retained: &Retained) -> Vec<String> {
+    let shown = retained.shown();
+    let first = [home(retained, &shown), robust(retained, &shown), smaller_force(retained, &shown)];
+    let mut words: Vec<String> = first.into_iter().flatten().collect();
+    words.extend(shown.iter().map(|&damper| one(retained, damper)));
+    words.extend(retained.same().into_iter().map(|(damper, other)| {
+        format!(
+            "{}: every tuning ends at E1max of the {} within {} %, so that one stands for both on this page.",
+            retained.name(damper),
+            retained.name(other),
+            100.0 * EQUAL
+        )
+    }));
+    words
+}
+
+/// The retention ranges at equal performance at home: that of the nominal design which has the most E1max there among those that do their
+/// work.
+fn home(retained: &Retained, shown: &[usize]) -> Option<String> {
+    let nominal = |damper: &usize| {
+        let is_it = |point: &&Point| point.damper == *damper && point.tuning == Tuning::Nominal;
+        retained.kept.iter().find(is_it).filter(|point| point.range().is_some())
+    };
+    let home = shown.iter().filter_map(nominal).map(|point| point.e1_max).reduce(f64::max)?;
+    let widest = |damper: &usize| {
+        let as_good = |point: &&Point| point.e1_max <= (1.0 + SAME) * home;
+        retained.front(*damper).into_iter().rfind(as_good)
+    };
+    let mut all: Vec<&Point> = shown.iter().filter_map(widest).collect();
+    all.sort_by(|a, b| b.factor().total_cmp(&a.factor()));
+    let words: Vec<String> = all.iter().map(|point| keeps(retained, point)).collect();
+    let none: Vec<&str> = shown
+        .iter()
+        .filter(|damper| all.iter().all(|point| point.damper != **damper))
+        .map(|damper| retained.name(*damper))
+        .collect();
+    let none = if none.is_empty() {
+        String::new()
+    } else {
+        format!("; none of the designs that were found as {} does its work at home", none.join(" or "))
+    };
+    Some(format!(
+        "At equal performance at home (at most {} J at the nominal k1, to 1 %) a damper keeps its work while k1 changes by a factor of {}{none}.",
+        rounded(home, 3),
+        words.join(", ")
+    ))
+}
+
+fn keeps(retained: &Retained, point: &Point) -> String {
+    let still = point.ranges[STILL].map_or(String::new(), |range| {
+        let factor = rounded(range.factor(), 3);
+        format!("; {factor} where the band of frequencies stays as it is at the nominal k1")
+    });
+    format!(
+        "{}: {} ({} J, {}{still})",
+        rounded(point.factor(), 3),
+        retained.name(point.damper),
+        rounded(point.e1_max, 4),
+        design_words(&point.at, 4)
+    )
+}
+
+/// The k1-robust designs, those under one bound on k2 side by side.
+fn robust(retained: &Retained, shown: &[usize]) -> Option<String> {
+    let worst = |damper: &usize| {
+        let (of, name) = (&retained.dampers[*damper], Tuning::Robust.name());
+        let row = retained.table.rows.iter().find(|row| row.damper == of.name && row.label == name)?;
+        let optimize = of.study().optimize.as_ref();
+        let stiffest = optimize.and_then(|optimize| optimize.bounds.get(Parameter::K2)?.1);
+        Some((stiffest.unwrap_or(f64::INFINITY), row.e1_max, of.name.as_str()))
+    };
+    let mut all: Vec<(f64, f64, &str)> = shown.iter().filter_map(worst).collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let parts = all.chunk_by(|a, b| a.0 == b.0).map(|same| {
+        let list: Vec<String> =
+            same.iter().map(|(_, worst, name)| format!("{} J ({name})", rounded(*worst, 4))).collect();
+        let most = Some(same[0].0).filter(|most| most.is_finite());
+        let bound =
+            most.map_or("with k2 free".to_owned(), |most| format!("with k2 at most {} N/m", short(most)));
+        format!("{bound} {}", list.join(" against "))
+    });
+    let parts: Vec<String> = parts.collect();
+    let k1 = retained.dampers.first()?.anew.len();
+    (!parts.is_empty()).then(|| {
+        format!("Tuned for the worst over all {k1} k1 (k1-robust), E1max is at worst: {}.", parts.join("; "))
+    })
+}
+
+/// What halving the force does to the nominal designs.
+fn smaller_force(retained: &Retained, shown: &[usize]) -> Option<String> {
+    let name = |of: &Forced| retained.name(of.damper);
+    let words = retained.forced.iter().filter(|of| shown.contains(&of.damper)).map(|of| {
+        if of.is_constant() {
+            return format!("{} {} under any force", name(of), rounded(of.share(0), 3));
+        }
+        let halves = (0..3).map(|half| {
+            let step = half * HALF;
+            let force = of.points.get(step).map_or(f64::NAN, |(force, _)| *force);
+            // Without the rounding of powers of two.
+            format!("{} at {} N", rounded(of.share(step), 3), short((force * 1e6).round() / 1e6))
+        });
+        let gaps = if of.proportional { " with D and C in proportion to the force" } else { "" };
+        format!("{}{gaps} {}", name(of), halves.collect::<Vec<_>>().join(", "))
+    });
+    let words: Vec<String> = words.collect();
+    let words = words.join("; ");
+    (!words.is_empty())
+        .then(|| format!("Of E1max without a damper the nominal designs leave at the nominal k1: {words}."))
+}
+
+/// A damper along k1.
+fn one(retained: &Retained, number: usize) -> String {
+    let damper = &retained.dampers[number];
+    let nominal = damper.nominal();
+    let worst = |tuning: Tuning| {
+        let is_it =
+            |curve: &&Curve| curve.damper == Some(number) && curve.tuning == tuning && curve.band == OWN;
+        retained.curves.iter().find(is_it).and_then(Curve::worst)
+    };
+    let mut words = format!("{}: ", damper.name);
+    let tuned = format!("tuned for k1 = {} N/m it has", short(nominal));
+    for (tuning, begin) in [(Tuning::Nominal, tuned.as_str()), (Tuning::Robust, "; k1-robust it has")] {
+        if let (Some((k1, most)), Some(at)) = (worst(tuning), damper.of(tuning)) {
+            let (home, most, k1) = (joule(damper.energy(&at, nominal)), joule(most), rounded(k1, 4));
+            words += &format!("{begin} {home} J there and at worst {most} J, at {k1} N/m");
+        }
+    }
+    if let Some((_, anew)) = worst(Tuning::Anew) {
+        words += &format!("; re-tuned for each k1 at most {} J", joule(anew));
+    }
+    words + "."
+}
+
+fn joule(value: f64) -> String {
+    if value.is_finite() { rounded(value, 4) } else { "-".to_owned() }
+}
+
 /// The values at the stiffnesses that were tuned for.
 fn worst(retained: &Retained) -> Block {
     let mut rows = Vec::new();
     for number in retained.shown() {
         let damper = &retained.dampers[number];
-        let mut add = |tuning: &str, energies: Vec<f64>| {
-            let mut row = vec![damper.name.clone(), tuning.to_owned()];
-            row.extend(energies.into_iter().map(joule));
-            rows.push(row);
+        let mut add = |tuning: Tuning, design: &dyn Fn(Design) -> Design| {
+            let energies = damper.anew.iter().map(|(k1, at)| joule(damper.energy(&design(*at), *k1)));
+            let first = [damper.name.clone(), tuning.name().to_owned()];
+            rows.push(first.into_iter().chain(energies).collect());
         };
-        for kept in damper.kept.iter().filter(|kept| retained.is_new(number, kept.tuning)) {
-            let energies = damper.anew.iter().map(|(k1, _)| damper.energy(&kept.at, *k1));
-            add(kept.tuning.name(), energies.collect());
+        for (tuning, at) in damper.kept.iter().filter(|(tuning, _)| retained.is_new(number, *tuning)) {
+            add(*tuning, &|_| *at);
         }
-        add(ANEW, damper.anew.iter().map(|(k1, at)| damper.energy(at, *k1)).collect());
+        add(Tuning::Anew, &|own| own);
     }
     let k1 = retained.dampers.iter().take(1).flat_map(|damper| damper.anew.iter().map(|(k1, _)| short(*k1)));
     let k1: Vec<String> = k1.collect();
@@ -104,24 +237,17 @@ fn worst(retained: &Retained) -> Block {
     Block::table(caption, ["damper", "tuning"].into_iter().map(str::to_owned).chain(k1), rows)
 }
 
-/// The cliffs of the curves.
-fn cliffs(retained: &Retained) -> Block {
+fn jumps(retained: &Retained) -> Block {
     let (mut lines, shown) = (Vec::new(), retained.shown());
-    for curve in
-        retained.curves.iter().filter(|curve| curve.damper.is_some_and(|damper| shown.contains(&damper)))
-    {
-        let (Some(number), Some(tuning)) = (curve.damper, curve.tuning) else { continue };
+    for Curve { damper, tuning, band, points } in &retained.curves {
+        let Some(number) = damper.filter(|damper| shown.contains(damper)) else { continue };
         let side = |(k1, energy): (f64, f64)| format!("{} J at {} N/m", joule(energy), rounded(k1, 6));
         let found: Vec<String> =
-            curve.cliffs().map(|[from, to]| format!("from {} to {}", side(from), side(to))).collect();
-        if !found.is_empty() {
-            lines.push(format!(
-                "Cliffs of the {}, {}{}: {}.",
-                retained.name(number),
-                tuning.name(),
-                if curve.still { ", in the band of the nominal k1" } else { "" },
-                found.join("; ")
-            ));
+            cliffs(points).map(|[from, to]| format!("from {} to {}", side(from), side(to))).collect();
+        if !found.is_empty() && *tuning != Tuning::Anew {
+            let (name, tuning, found) = (retained.name(number), tuning.name(), found.join("; "));
+            let band = if *band == STILL { ", in the band of the nominal k1" } else { "" };
+            lines.push(format!("Cliffs of the {name}, {tuning}{band}: {found}."));
         }
     }
     if lines.is_empty() { Block::words("No cliffs.") } else { Block::List(lines) }
@@ -138,12 +264,11 @@ fn ranges(retained: &Retained) -> Block {
             [from, to, rounded(range.factor(), 3)]
         }
     };
-    let still = retained.kept.iter().any(|point| point.still.is_some());
+    let still = retained.kept.iter().any(|point| point.ranges[STILL].is_some());
     let row = |point: &Point| {
-        let mut row = [retained.name(point.damper), point.tuning_name()].map(str::to_owned).to_vec();
+        let mut row = [retained.name(point.damper), point.tuning.name()].map(str::to_owned).to_vec();
         row.push(joule(point.e1_max));
-        row.extend(cells(point.range));
-        row.extend(still.then(|| cells(point.still)).into_iter().flatten());
+        row.extend(point.ranges[..=usize::from(still)].iter().flat_map(|range| cells(*range)));
         row
     };
     let mut head = vec!["damper", "tuning", "E1max at the nominal k1, J", "from, N/m", "to, N/m", "factor"];
@@ -174,14 +299,13 @@ fn forces(retained: &Retained) -> Block {
     Block::table(caption, head, rows)
 }
 
-/// The trade of one damper in words.
 fn traded(retained: &Retained, damper: usize) -> String {
     let (name, front) = (retained.name(damper), retained.front(damper));
     let (Some(least), Some(widest)) = (front.first(), front.last()) else {
         return format!("{name}: no design that was found does half of the work even at the nominal k1.");
     };
     let said = |point: &Point| {
-        let ends = point.range.map_or(String::new(), |range| {
+        let ends = point.range().map_or(String::new(), |range| {
             format!("{} to {} N/m", rounded(range.from, 4), rounded(range.to, 4))
         });
         format!(
@@ -194,7 +318,6 @@ fn traded(retained: &Retained, damper: usize) -> String {
     format!("{name}: from {}, to {}.", said(least), said(widest))
 }
 
-/// All designs.
 fn designs(retained: &Retained) -> Block {
     let shown = retained.shown();
     let is_shown = |row: &Row| {

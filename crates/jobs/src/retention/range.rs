@@ -4,10 +4,9 @@
 //! design does its work at a k1 if its reduction is at least half of that of the best TMD for that k1, with the mass of the damper in the
 //! study, k2 and c2 free. That is `E1max <= √(E1max without · E1max of that TMD)`. `docs/decisions.md` says why.
 
-use super::tuned::{on_samples, still as still_band};
 use crate::Error;
 use rayon::prelude::*;
-use retune_model::{Bare, Coupled, Damper, Design, Parameter, Scene, den_hartog};
+use retune_model::{Bare, Coupled, Damper, Parameter, Scene, den_hartog};
 use retune_optim::{Bounds, Failures, Options, Scaling, minimize};
 use retune_study::{Rule, Setting, Study};
 use std::ops::ControlFlow;
@@ -64,9 +63,6 @@ pub struct Threshold {
 
 impl Threshold {
     /// For the structure, the mass of the damper and the band of a study.
-    ///
-    /// # Errors
-    /// The study has no damper, a stiffness is beyond all numbers, or the best TMD cannot be searched for.
     pub fn of(study: &Study) -> Result<Self, Error> {
         let nominal = study.scene.primary.stiffness.get();
         let steps = (-(STEPS as i32)..=STEPS as i32).into_par_iter();
@@ -117,47 +113,6 @@ impl Threshold {
     }
 }
 
-/// What a design must keep to do its work, of one study.
-#[derive(Debug)]
-pub struct Criterion {
-    /// The least reduction that counts.
-    pub threshold: Threshold,
-    /// The same where the band of frequencies stays as it is at the nominal stiffness; none if the band of the study does not move with k1.
-    pub still: Option<Still>,
-}
-
-impl Criterion {
-    /// Of a study.
-    ///
-    /// # Errors
-    /// As [`Threshold::of`].
-    pub fn of(study: &Study) -> Result<Self, Error> {
-        let still = |study| Ok::<_, Error>(Still { threshold: Threshold::of(&study)?, study });
-        Ok(Self { threshold: Threshold::of(study)?, still: still_band(study).map(still).transpose()? })
-    }
-}
-
-/// A study whose band stays where the natural frequency of its own structure puts it, whatever k1 becomes, and what counts as half of the
-/// work then.
-#[derive(Debug)]
-pub struct Still {
-    /// The study.
-    pub study: Study,
-    /// The least reduction that counts.
-    pub threshold: Threshold,
-}
-
-/// The range of a design by the objective of a study, on so many samples of its band.
-pub fn range(study: &Study, samples: Option<usize>, at: &Design, threshold: &Threshold) -> Option<Range> {
-    let study = on_samples(study, samples, at)?;
-    let (goal, settings) = (study.goal(), study.solver.settings());
-    threshold.range(Care::RESULT, |k1, cutoff| {
-        let scene = study.scene_with(&[Setting::new(Parameter::K1, k1)]);
-        let found = scene.ok().and_then(|scene| goal.evaluate(&scene, &settings, cutoff).ok());
-        found.map_or(f64::INFINITY, |found| found.value)
-    })
-}
-
 /// The largest E1max that counts as half of the work at a stiffness, J.
 fn limit(study: &Study, k1: f64) -> Result<f64, Error> {
     let scene = study.scene_with(&[Setting::new(Parameter::K1, k1)])?;
@@ -171,9 +126,6 @@ fn limit(study: &Study, k1: f64) -> Result<f64, Error> {
 }
 
 /// The TMD with the mass of a damper, k2 and c2 free, that has the least steady E1max over a band (rad/s), and this, J.
-///
-/// # Errors
-/// Nothing can be found.
 pub fn best_tmd(scene: &Scene, damper: Damper, band: [f64; 2]) -> Result<(Damper, f64), Error> {
     let tuned = |x: &[f64]| {
         let mut tmd = damper;

@@ -2,7 +2,6 @@
 
 use super::curves::Curve;
 use super::force::Forced;
-use super::range::Criterion;
 use super::trade::{Point, front};
 use super::tuned::{Tuned, Tuning};
 use crate::designs::Designs;
@@ -21,8 +20,6 @@ pub struct Retained {
     pub bounds: SpringBounds,
     /// E1max along k1.
     pub curves: Vec<Curve>,
-    /// For each damper, what counts as half of the work.
-    pub criteria: Vec<Criterion>,
     /// E1max of the nominal designs under smaller forces.
     pub forced: Vec<Forced>,
     /// The designs that are kept, with their ranges.
@@ -34,19 +31,17 @@ pub struct Retained {
 }
 
 impl Retained {
-    /// The name of a damper.
     pub(super) fn name(&self, damper: usize) -> &str {
         &self.dampers[damper].name
     }
 
     /// The study of the first damper, which figures name.
     pub(super) fn study(&self) -> Option<&Study> {
-        self.dampers.first().map(|damper| &damper.study)
+        self.dampers.first().map(Tuned::study)
     }
 
-    /// Whether the mass of a damper is varied.
     pub(super) fn varies_mass(&self) -> bool {
-        self.dampers.iter().any(|damper| damper.study.varied().contains(&Parameter::M2))
+        self.dampers.iter().any(|damper| damper.study().varied().contains(&Parameter::M2))
     }
 
     /// The designs of a damper that no other dominates, the least E1max first.
@@ -81,10 +76,10 @@ impl Retained {
         tuning != Tuning::Paper || self.dampers[..damper].iter().all(|earlier| earlier.of(tuning) != at)
     }
 
-    /// The kept designs that are shown.
     pub(super) fn shown_kept(&self) -> Vec<&Point> {
         let shown = self.shown();
-        let is_new = |point: &Point| point.tuning.is_none_or(|tuning| self.is_new(point.damper, tuning));
-        self.kept.iter().filter(|point| shown.contains(&point.damper) && is_new(point)).collect()
+        let is_shown =
+            |point: &&Point| shown.contains(&point.damper) && self.is_new(point.damper, point.tuning);
+        self.kept.iter().filter(is_shown).collect()
     }
 }

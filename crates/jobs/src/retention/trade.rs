@@ -4,14 +4,14 @@
 //! the nominal design and the widest, the least E1max with at least this range (`fminsearch`, from the best design so far). The
 //! front is what no design dominates, evaluated again on the common samples, at the tolerance of the study.
 
-use super::range::{Care, Criterion, Range, Threshold, range};
-use super::tuned::{Tuned, Tuning};
+use super::range::{Care, Range, Threshold};
+use super::tuned::{OWN, STILL, Tuned, Tuning, on_samples};
+use crate::Error;
 use crate::columns;
 use crate::searches::Searches;
 use crate::tune::objective::{kept, loose};
-use crate::{Error, Observer};
-use retune_model::{Design, Parameter};
-use retune_optim::{DesignObjective, Global, explore, minimize};
+use retune_model::{Design, Parameter, Scene};
+use retune_optim::{DesignObjective, Evaluation, Global, explore, minimize};
 use retune_report::cells;
 use retune_report::table::{Cell, Column, Table};
 use retune_study::{Setting, Study};
@@ -42,46 +42,52 @@ const MOST: usize = 32;
 /// A value above every E1max, J: of a design with too small a range.
 const TOO_NARROW: f64 = 1e6;
 
+/// The columns of the ends of ranges: with the band of the study, and with one that stays.
+pub(super) const ENDS: [&str; 4] = ["from", "to", "still_from", "still_to"];
+
 /// A design with both measures, on the common samples.
 #[derive(Clone, Debug)]
 pub struct Point {
     /// The number of its damper.
     pub damper: usize,
-    /// How it was tuned, if it is one that is kept; none of one between the nominal design and that with the widest range.
-    pub tuning: Option<Tuning>,
+    /// How it was tuned.
+    pub tuning: Tuning,
     /// The design.
     pub at: Design,
     /// E1max at the nominal stiffness, J.
     pub e1_max: f64,
-    /// Its retention range.
-    pub range: Option<Range>,
-    /// The same with the band where it is at the nominal k1, if the band of its study moves.
-    pub still: Option<Range>,
+    /// Its retention range with each band; none with one that its study does not have.
+    pub ranges: [Option<Range>; 2],
 }
 
 impl Point {
     /// A design of a damper, on the common samples.
-    pub fn new(
-        (damper, tuned): (usize, &Tuned),
-        tuning: Option<Tuning>,
-        at: Design,
-        Criterion { threshold, still }: &Criterion,
-    ) -> Self {
+    pub fn new((damper, tuned): (usize, &Tuned), tuning: Tuning, at: Design) -> Self {
         let e1_max = tuned.energy(&at, tuned.nominal());
-        let still = still.as_ref();
-        let still = still.and_then(|still| range(&still.study, tuned.samples, &at, &still.threshold));
-        let range = range(&tuned.study, tuned.samples, &at, threshold);
-        Self { damper, tuning, at, e1_max, range, still }
+        let range = |band: usize| {
+            let study = on_samples(tuned.studies.get(band)?, tuned.samples, &at)?;
+            let (goal, settings) = (study.goal(), study.solver.settings());
+            let evaluate = |scene: &Scene, cutoff| goal.evaluate(scene, &settings, cutoff);
+            range(&study, tuned.thresholds.get(band)?, Care::RESULT, evaluate)
+        };
+        Self { damper, tuning, at, e1_max, ranges: [OWN, STILL].map(range) }
     }
 
-    /// The name of its tuning in tables.
-    pub fn tuning_name(&self) -> &'static str {
-        self.tuning.map_or(FRONT, Tuning::name)
+    /// Its retention range.
+    pub fn range(&self) -> Option<Range> {
+        self.ranges[OWN]
+    }
+
+    /// The ends of its ranges, by the names of [`ENDS`].
+    pub(super) fn ends(&self) -> [Option<f64>; 4] {
+        let [own, still] = self.ranges;
+        let [from, to] = [|range: Range| range.from, |range: Range| range.to];
+        [own.map(from), own.map(to), still.map(from), still.map(to)]
     }
 
     /// The factor by which k1 may rise and fall; 1 without a range.
     pub fn factor(&self) -> f64 {
-        self.range.map_or(1.0, |range| range.factor())
+        self.range().map_or(1.0, |range| range.factor())
     }
 
     /// Whether it is of the same damper, as good as `other` in both measures and better in one of them.
@@ -96,25 +102,30 @@ impl Point {
 
 /// The designs that no other of the same damper dominates, the least E1max first.
 pub fn front(points: &[Point], damper: usize) -> Vec<&Point> {
-    let good = |point: &&Point| point.damper == damper && point.range.is_some();
+    let good = |point: &&Point| point.damper == damper && point.range().is_some();
     let dominated = |point: &Point| points.iter().any(|other| other.dominates(point));
     let mut front: Vec<&Point> = points.iter().filter(good).filter(|point| !dominated(point)).collect();
     front.sort_by(|a, b| a.e1_max.total_cmp(&b.e1_max));
     front
 }
 
+/// The range of the damper in the scene of a study, by what it has in the scene at another k1.
+fn range<E>(
+    study: &Study,
+    threshold: &Threshold,
+    care: Care,
+    evaluate: impl Fn(&Scene, f64) -> Result<Evaluation, E> + Sync,
+) -> Option<Range> {
+    threshold.range(care, |k1, cutoff| {
+        let scene = study.scene_with(&[Setting::new(Parameter::K1, k1)]).ok();
+        let found = scene.and_then(|scene| evaluate(&scene, cutoff).ok());
+        found.map_or(f64::INFINITY, |found| found.value)
+    })
+}
+
 /// The designs between the nominal one and that with the widest range, of one damper.
-///
-/// # Errors
-/// The study cannot be searched, or the journal not be written.
-pub fn trade(
-    number: usize,
-    tuned: &Tuned,
-    criterion: &Criterion,
-    searches: &Searches,
-    watch: &dyn Observer,
-) -> Result<Vec<Point>, Error> {
-    let (study, threshold) = (&tuned.study, &criterion.threshold);
+pub fn trade(number: usize, tuned: &Tuned, searches: &Searches) -> Result<Vec<Point>, Error> {
+    let (study, threshold) = (tuned.study(), &tuned.thresholds[OWN]);
     let search = study.search().map_err(Error::rule(study))?;
     let [of, of_ranges] = [RTOL, OF_RANGES].map(|rtol| loose(study, &search, &search.variables, rtol));
     let stages = ["E1max", "range"].map(|what| format!("{number} {what}"));
@@ -122,11 +133,11 @@ pub fn trade(
     let evaluated = Evaluated { study, of: &of, of_ranges: &of_ranges, threshold, searches, stages, all };
     // The designs that are kept come first, those within the bounds of the search.
     let mut least = 0.0;
-    for kept in &tuned.kept {
-        let x: Vec<f64> = search.variables.iter().map(|variable| kept.at.get(*variable)).collect();
+    for (tuning, at) in &tuned.kept {
+        let x: Vec<f64> = search.variables.iter().map(|variable| at.get(*variable)).collect();
         if search.options.bounds.iter().zip(&x).all(|(bounds, value)| bounds.contain(*value)) {
             let (_, width) = evaluated.evaluate(&x);
-            if kept.tuning == Tuning::Nominal {
+            if *tuning == Tuning::Nominal {
                 least = width;
             }
         }
@@ -141,11 +152,13 @@ pub fn trade(
         found.map_err(|source| Error::Global { source, failures: of.failures() })?;
     }
     let options = || retune_optim::Options { max_fun_evals: Some(EVALUATIONS), ..search.options.clone() };
-    let refuse = |source| Error::Search { source, failures: of.failures() };
-    if let Some((from, _)) = evaluated.best(score) {
-        minimize(|x, _| widest(x), &from, options(), |_| ControlFlow::Continue(())).map_err(refuse)?;
-    }
-    searches.journal().check()?;
+    let refine = |value: &dyn Fn(&[f64], f64) -> f64, from: Option<(Vec<f64>, _)>| -> Result<(), Error> {
+        let Some((from, _)) = from else { return Ok(()) };
+        let found = minimize(value, &from, options(), |_| ControlFlow::Continue(()));
+        found.map_err(|source| Error::Search { source, failures: of.failures() })?;
+        Ok(searches.journal().check()?)
+    };
+    refine(&|x, _| widest(x), evaluated.best(score))?;
     let most = evaluated.best(|(_, width)| -width).map_or(0.0, |(_, (_, width))| width);
     let targets = if most > 0.0 { BETWEEN } else { 0 };
     for i in 1..=targets {
@@ -155,17 +168,12 @@ pub fn trade(
             (_, width) => TOO_NARROW * (1.0 + wanted - width),
         };
         let keeps = |(e1_max, width): (f64, f64)| if width >= wanted { e1_max } else { f64::INFINITY };
-        let Some((from, _)) = evaluated.best(keeps) else { continue };
-        minimize(value, &from, options(), |_| ControlFlow::Continue(())).map_err(refuse)?;
-        searches.journal().check()?;
+        refine(&value, evaluated.best(keeps))?;
     }
     let designs = evaluated.front(&search.variables)?;
-    watch.log(&format!(
-        "{}: {} designs between the least E1max and the widest range",
-        tuned.name,
-        designs.len()
-    ))?;
-    Ok(designs.into_iter().map(|at| Point::new((number, tuned), None, at, criterion)).collect())
+    let (name, count) = (&tuned.name, designs.len());
+    searches.watch.log(&format!("{name}: {count} designs between the least E1max and the widest range"))?;
+    Ok(designs.into_iter().map(|at| Point::new((number, tuned), Tuning::Front, at)).collect())
 }
 
 /// The designs of a damper that were evaluated: E1max at the nominal stiffness, J, and the factor of its range less 1.
@@ -198,12 +206,9 @@ impl Evaluated<'_> {
     fn width(&self, x: &[f64]) -> f64 {
         let Ok(scene) = self.of.scene(x) else { return 0.0 };
         let study = Study { scene, ..self.study.clone() };
-        let energy = |k1: f64, cutoff: f64| {
-            let scene = study.scene_with(&[Setting::new(Parameter::K1, k1)]).ok();
-            let found = scene.and_then(|scene| self.of_ranges.evaluate(&scene, cutoff).ok());
-            found.map_or(f64::INFINITY, |found| found.value)
-        };
-        self.threshold.range(Care::SEARCH, energy).map_or(0.0, |range| range.factor() - 1.0)
+        let evaluate = |scene: &Scene, cutoff| self.of_ranges.evaluate(scene, cutoff);
+        let range = range(&study, self.threshold, Care::SEARCH, evaluate);
+        range.map_or(0.0, |range| range.factor() - 1.0)
     }
 
     /// All designs with both numbers; the order does not depend on which thread was first.
@@ -230,37 +235,26 @@ impl Evaluated<'_> {
             widest = widest.max(*width);
             more
         });
-        let step = widest / MOST as f64;
-        let mut next = 0.0;
-        let last = all.len().saturating_sub(1);
-        let mut number = 0;
-        all.retain(|(_, (_, width))| {
-            let kept = *width >= next || number == last;
-            if kept {
+        let (step, last, mut next) = (widest / MOST as f64, all.len().saturating_sub(1), 0.0);
+        let mut front = Vec::new();
+        for (number, (x, (_, width))) in all.into_iter().enumerate() {
+            if width >= next || number == last {
                 next = width + step;
+                front.push(Design::of_varied(&self.of.damper(&x)?, varied));
             }
-            number += 1;
-            kept
-        });
-        all.iter().map(|(x, _)| Ok(Design::of_varied(&self.of.damper(x)?, varied))).collect()
+        }
+        Ok(front)
     }
 }
 
-/// A row for each design.
 pub fn table<'a>(dampers: &[Tuned], points: impl Iterator<Item = &'a Point> + Clone) -> Table {
     let parameters = columns::of_designs(points.clone().map(|point| &point.at));
     let names = [&["damper", "tuning"], &*columns::symbols(&parameters), &["E1max"]].concat();
-    let ends = ["from", "to", "still_from", "still_to"].map(|end| Column::new(end, Parameter::K1.unit()));
-    let mut table = Table::new(names.into_iter().map(columns::column).chain(ends));
-    for point in points {
-        let first = cells![dampers[point.damper].name.as_str(), point.tuning_name()];
-        let ends = [point.range, point.still].map(|range| range.map(|range| [range.from, range.to]));
-        let ends = ends.map(|ends| ends.map_or([Cell::Empty, Cell::Empty], |ends| ends.map(Cell::from)));
+    let ends = ENDS.map(|end| Column::new(end, Parameter::K1.unit()));
+    let row = |point: &Point| {
+        let first = cells![dampers[point.damper].name.as_str(), point.tuning.name()];
         let design = columns::cells_of(&point.at, &parameters);
-        table.push([first, design, cells![point.e1_max], ends.concat()].concat());
-    }
-    table
+        [first, design, cells![point.e1_max], point.ends().map(Cell::from).into()].concat()
+    };
+    Table::new(names.into_iter().map(columns::column).chain(ends)).with(points.map(row))
 }
-
-/// The tuning of a design between the nominal one and that with the widest range.
-const FRONT: &str = "front";

@@ -1,91 +1,112 @@
 //! Dampers tuned for several stiffnesses of the structure.
 
+use super::range::Threshold;
+use crate::Error;
 use crate::resampled::finer;
 use retune_model::{Design, NonNegative, Positive, Scene};
 use retune_optim::Stiffnesses;
 use retune_study::Study;
 
-/// The table of the designs.
 pub(super) const DESIGNS: &str = "retune.csv";
-/// The table of the curves.
 pub(super) const CURVES: &str = "retention.csv";
-/// The table of smaller forces.
+pub(super) const RANGES: &str = "range.csv";
 pub(super) const FORCES: &str = "force.csv";
 
-/// How a damper came to its design. It keeps this design, whatever k1 becomes.
+/// How a damper came to its design.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tuning {
-    /// That of the paper.
+    /// There is no damper.
+    None,
+    /// That of the paper, kept whatever k1 becomes.
     Paper,
-    /// Tuned for the k1 of its study.
+    /// Tuned for the k1 of its study, and kept.
     Nominal,
-    /// Tuned for the worst over all k1.
+    /// Tuned for the worst over all k1, and kept.
     Robust,
+    /// Tuned anew at each k1.
+    Anew,
+    /// Between the nominal design and that with the widest range.
+    Front,
 }
 
 impl Tuning {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Paper, Self::Nominal, Self::Robust];
+    /// Those whose design is kept.
+    pub const KEPT: [Self; 3] = [Self::Paper, Self::Nominal, Self::Robust];
 
     /// Its name in tables and figures.
     pub const fn name(self) -> &'static str {
         match self {
+            Self::None => "none",
             Self::Paper => "paper",
             Self::Nominal => "nominal",
             Self::Robust => "k1-robust",
+            Self::Anew => "re-tuned",
+            Self::Front => "front",
         }
     }
 }
 
-/// A design that is kept while k1 changes.
-#[derive(Clone, Copy, Debug)]
-pub struct Kept {
-    /// How it was found.
-    pub tuning: Tuning,
-    /// The design.
-    pub at: Design,
-}
+/// The names of bands in tables: that of the study, and one that stays where it is at the nominal k1.
+pub(super) const BANDS: [&str; 2] = ["own", "still"];
+/// Their numbers.
+pub(super) const OWN: usize = 0;
+pub(super) const STILL: usize = 1;
 
 /// A damper with its designs.
 #[derive(Debug)]
 pub struct Tuned {
     /// Its name.
     pub name: String,
-    /// Its study; the damper in the scene is the paper's.
-    pub study: Study,
+    /// Its study, the damper in whose scene is the paper's; then the same with a band that stays, if that of the study moves with k1.
+    pub studies: Vec<Study>,
+    /// For each of them what counts as half of the work.
+    pub thresholds: Vec<Threshold>,
     /// The samples of the band on which all designs are compared.
     pub samples: Option<usize>,
-    /// The designs that are kept.
-    pub kept: Vec<Kept>,
+    /// The designs that are kept while k1 changes.
+    pub kept: Vec<(Tuning, Design)>,
     /// The design for each stiffness k1, N/m, in their order.
     pub anew: Vec<(f64, Design)>,
 }
 
 impl Tuned {
+    /// Without designs and thresholds.
+    pub(super) fn new(name: String, study: Study, samples: Option<usize>) -> Self {
+        let studies = [Some(study.clone()), still(&study)].into_iter().flatten().collect();
+        Self { name, studies, thresholds: Vec::new(), samples, kept: Vec::new(), anew: Vec::new() }
+    }
+
+    /// The same with its thresholds.
+    pub(super) fn judged(self) -> Result<Self, Error> {
+        Ok(Self { thresholds: self.studies.iter().map(Threshold::of).collect::<Result<_, _>>()?, ..self })
+    }
+
+    /// Its study.
+    pub fn study(&self) -> &Study {
+        &self.studies[OWN]
+    }
+
     /// The stiffness of its study, N/m.
     pub fn nominal(&self) -> f64 {
-        self.study.scene.primary.stiffness.get()
+        self.study().scene.primary.stiffness.get()
     }
 
     /// The kept design of a tuning, if it has one.
     pub fn of(&self, tuning: Tuning) -> Option<Design> {
-        self.kept.iter().find(|kept| kept.tuning == tuning).map(|kept| kept.at)
+        self.kept.iter().find(|(kept, _)| *kept == tuning).map(|(_, at)| *at)
     }
 
     /// E1max of a design at a stiffness (N/m), J, on the common samples; NaN where it cannot be run.
     pub fn energy(&self, at: &Design, k1: f64) -> f64 {
-        energy(&self.study, self.samples, at, k1).unwrap_or(f64::NAN)
+        energy(self.study(), self.samples, at, k1).unwrap_or(f64::NAN)
     }
 
     /// E1max of a design for what it was tuned for, J: the worst over all `k1` (N/m), that at its own, the paper's at the nominal one. None
     /// where it cannot be run.
     pub fn energy_as_tuned(&self, tuning: &str, at: &Design, k1: &[f64]) -> Option<f64> {
         let own = k1.iter().copied().find(|k1| label(*k1) == tuning).unwrap_or(self.nominal());
-        if tuning == Tuning::Robust.name() {
-            energy(&over(&self.study, k1), self.samples, at, own)
-        } else {
-            energy(&self.study, self.samples, at, own)
-        }
+        let robust = (tuning == Tuning::Robust.name()).then(|| over(self.study(), k1));
+        energy(robust.as_ref().unwrap_or(self.study()), self.samples, at, own)
     }
 }
 
@@ -95,7 +116,7 @@ pub fn label(k1: f64) -> String {
 }
 
 /// A study with its band where the natural frequency of its own structure puts it; none if it does not move with k1.
-pub fn still(study: &Study) -> Option<Study> {
+fn still(study: &Study) -> Option<Study> {
     let mut study = study.clone();
     let (primary, mut moves) = (study.scene.primary, false);
     if let Some(optimize) = &mut study.optimize {

@@ -36,20 +36,17 @@ fn contract_each_damper_is_compared_at_each_restitution() {
     for tuning in Tuning::ALL {
         let restitutions: Vec<f64> = found.of(tuning).map(|point| point.restitution).collect();
         assert_eq!(restitutions, [1.0, 0.7], "{tuning:?}");
-        let [.., without] = of(&found, tuning, 1.0).worth.powers.parts();
-        let [.., with] = of(&found, tuning, 0.7).worth.powers.parts();
+        let [.., without] = of(&found, tuning, 1.0).powers;
+        let [.., with] = of(&found, tuning, 0.7).powers;
         assert_eq!(without, 0.0, "{tuning:?}");
-        let strikes = of(&found, tuning, 0.7).worth.impact_speed > 0.0;
+        let strikes = of(&found, tuning, 0.7).impact_speed > 0.0;
         assert_eq!(with > 0.0, strikes, "{tuning:?}: {with} W");
     }
     let [lossless, anew] = [Tuning::Lossless, Tuning::Anew].map(|tuning| of(&found, tuning, 1.0));
-    assert_eq!((lossless.design, lossless.worth.value), (anew.design, anew.worth.value));
-    let at = |tuning| of(&found, tuning, 0.7).worth.value;
+    assert_eq!((lossless.design, lossless.value), (anew.design, anew.value));
+    let at = |tuning| of(&found, tuning, 0.7).value;
     assert!(at(Tuning::Anew) <= at(Tuning::Lossless), "it starts from the other");
-    assert!(
-        found.of(Tuning::Paper).all(|point| point.worth.impact_speed > 0.0),
-        "the paper's damper strikes"
-    );
+    assert!(found.of(Tuning::Paper).all(|point| point.impact_speed > 0.0), "the paper's damper strikes");
     let said = verified::holds(&desk, "out", 8);
     assert!(said.contains("losses.csv"), "{said}");
 }

@@ -145,10 +145,10 @@ fn invariant_ranges_end_where_half_of_the_work_ends() {
     );
     let done = good(retention(&request(&desk, "tmds.json", "out"), &stiffnesses(&[3e4]), &Silent));
     let Done::Made(retained) = done else { panic!("it was finished before") };
-    let (damper, threshold) = (&retained.dampers[0], &retained.criteria[0].threshold);
+    let (damper, threshold) = (&retained.dampers[0], &retained.dampers[0].thresholds[0]);
     let mut count = 0;
     for point in retained.kept.iter().chain(&retained.points) {
-        let range = point.range.expect("a range");
+        let range = point.range().expect("a range");
         assert!(range.from < damper.nominal() && damper.nominal() < range.to, "{range:?}");
         let share = |k1: f64| damper.energy(&point.at, k1) / threshold.at(k1);
         for (end, outwards) in [(range.from, 0.999), (range.to, 1.001)] {
