@@ -111,12 +111,8 @@ pub fn judge(study: &Study) -> Result<Certificate, Error> {
 fn damper_of(study: &Study) -> Result<&Damper, Error> {
     study.begins_at_rest().map_err(Error::rule(study))?;
     study.scene.damper.as_ref().ok_or_else(|| {
-        let rule = Rule::NotAllowed {
-            field: "scene.damper".to_owned(),
-            value: "none".to_owned(),
-            allowed: "a damper, for that is what is certified",
-        };
-        Error::rule(study)(rule)
+        let allowed = "a damper, for that is what is certified";
+        Error::rule(study)(Rule::not_allowed("scene.damper", "none", allowed))
     })
 }
 

@@ -40,27 +40,14 @@ const TOLD: u64 = 100;
 
 /// Why a line has no value.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[expect(missing_docs, reason = "its words say what each is and holds")]
 pub enum LineError {
-    /// Too few numbers, or too many.
     #[error("give one number for each of {}; found {found}", words(.wanted))]
-    Count {
-        /// Their number.
-        found: usize,
-        /// The tuned parameters.
-        wanted: Vec<Parameter>,
-    },
-    /// Not a number.
+    Count { found: usize, wanted: Vec<Parameter> },
     #[error("{variable}: \"{}\" is not a number", shown(.text))]
-    Number {
-        /// The parameter.
-        variable: Parameter,
-        /// The text as given.
-        text: String,
-    },
-    /// The line is too long.
+    Number { variable: Parameter, text: String },
     #[error("the line is longer than {} bytes", input::MOST)]
     Long,
-    /// The design has no value.
     #[error(transparent)]
     Unusable(#[from] Unusable),
 }

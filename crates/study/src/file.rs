@@ -1,11 +1,11 @@
 //! From a file to the values of its fields, or to one message with the correction.
 
 use super::explain::explain;
-use super::kind::Kind;
 use super::rule::Rule;
 use super::units;
-use serde::Serialize;
+use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::borrow::Cow;
 use std::path::Path;
@@ -13,87 +13,26 @@ use thiserror::Error;
 
 /// The error of a study file.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "its words say what each is and holds")]
 pub enum StudyError {
-    /// The file does not exist or cannot be read.
     #[error("{file}: cannot be read: {source}")]
-    Unreadable {
-        /// The file.
-        file: String,
-        /// The system's reason.
-        source: std::io::Error,
-    },
-    /// The file is not text.
+    Unreadable { file: String, source: std::io::Error },
     #[error("{file}: not UTF-8 text (at byte {byte})")]
-    NotText {
-        /// The file.
-        file: String,
-        /// Offset of the first byte that is not UTF-8.
-        byte: usize,
-    },
-    /// The text is not JSON, or does not have the fields of a study.
+    NotText { file: String, byte: usize },
     #[error("{file}:{line}:{column}: {problem}")]
-    Field {
-        /// The file.
-        file: String,
-        /// Line, from 1.
-        line: usize,
-        /// Column, from 1.
-        column: usize,
-        /// The field's path and the error.
-        problem: String,
-    },
-    /// The file is of another kind.
+    Field { file: String, line: usize, column: usize, problem: String },
     #[error("{file}: its kind is `{}`, for {}; a file of kind `{}` is needed here", found.name(), found.commands(), wanted.name())]
-    Kind {
-        /// The file.
-        file: String,
-        /// Its kind.
-        found: Kind,
-        /// The kind that is needed.
-        wanted: Kind,
-    },
-    /// Values without their names.
+    Kind { file: String, found: Kind, wanted: Kind },
     #[error("{file}: {field}: wrong type: list, expected an object")]
-    List {
-        /// The file.
-        file: String,
-        /// The field's path.
-        field: String,
-    },
-    /// Each field is valid but they contradict one another.
+    List { file: String, field: String },
     #[error("{file}: {rule}")]
-    Rule {
-        /// The file.
-        file: String,
-        /// The rule that is broken.
-        rule: Rule,
-    },
-    /// Results of several dampers, where those of one are needed.
+    Rule { file: String, rule: Rule },
     #[error("{file}: holds the designs of several searches{}", .one.as_ref().map_or(", but not their studies".to_owned(), |one| format!(": give one of them, for instance {one}")))]
-    Several {
-        /// The directory.
-        file: String,
-        /// The first that can be read in their place.
-        one: Option<String>,
-    },
-    /// A directory without the results of a search.
+    Several { file: String, one: Option<String> },
     #[error("{file}: these are no results: there is no study.json in it, but {found}{}", .one.as_ref().map(|one| format!("; give a study or results, for instance {one}")).unwrap_or_default())]
-    NoResults {
-        /// The directory.
-        file: String,
-        /// What is in it.
-        found: String,
-        /// The first in it that can be read in its place.
-        one: Option<String>,
-    },
-    /// A value of the paper's plan is not allowed.
+    NoResults { file: String, found: String, one: Option<String> },
     #[error("{file}: {problem}")]
-    Paper {
-        /// The file.
-        file: String,
-        /// The field and the allowed values.
-        problem: String,
-    },
+    Paper { file: String, problem: String },
 }
 
 /// Reads a file as text, without a byte-order mark.
@@ -178,9 +117,73 @@ fn list_for_object(given: &Value, meant: &Value) -> Option<String> {
     }
 }
 
+/// The kind of a study file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// One structure with one damper.
+    #[default]
+    Study,
+    /// A table of dampers, each with its study and a design of the paper.
+    Table2,
+    /// Dampers under ever looser bounds.
+    Fronts,
+    /// The whole paper.
+    Paper,
+}
+
+impl Kind {
+    /// Its name, as the field `kind` of a file has it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Study => "study",
+            Self::Table2 => "table2",
+            Self::Fronts => "fronts",
+            Self::Paper => "paper",
+        }
+    }
+
+    /// The commands that take it.
+    pub const fn commands(self) -> &'static str {
+        match self {
+            Self::Study => "`retune optimize`, `certify`, `simulate`, `sweep` and `evaluate`",
+            Self::Table2 => "`retune table2` and `retune retention`",
+            Self::Fronts => "`retune fronts`",
+            Self::Paper => "`retune reproduce`, `figure` and `table`",
+        }
+    }
+
+    /// The field that only files of this kind have; a file without `kind` is recognised by it.
+    const fn field(self) -> &'static str {
+        match self {
+            Self::Study => "scene",
+            Self::Table2 => "rows",
+            Self::Fronts => "dampers",
+            Self::Paper => "table2",
+        }
+    }
+
+    /// The kind of a JSON object, by its field `kind` or else by its other fields; none of anything else.
+    pub(super) fn of(json: &Value) -> Option<Self> {
+        match json.get("kind") {
+            Some(kind) => Self::deserialize(kind).ok(),
+            None => [Self::Study, Self::Table2, Self::Fronts, Self::Paper]
+                .into_iter()
+                .find(|kind| json.get(kind.field()).is_some()),
+        }
+    }
+
+    /// Whether it is the default, which files need not say.
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
+    pub(super) fn is_study(&self) -> bool {
+        *self == Self::Study
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::json;
 
     #[test]
     fn contract_a_file_of_another_kind_is_named_with_its_commands() {
@@ -190,5 +193,14 @@ mod tests {
             "t.json: its kind is `table2`, for `retune table2` and `retune retention`; a file of kind `study` is needed here"
         );
         assert!(expect(Kind::Table2, r#"{ "rows": [] }"#, "t.json").is_ok());
+    }
+
+    #[test]
+    fn contract_a_file_says_its_kind_or_is_recognised_by_its_fields() {
+        assert_eq!(Kind::of(&json!({ "kind": "fronts", "rows": [] })), Some(Kind::Fronts));
+        assert_eq!(Kind::of(&json!({ "rows": [] })), Some(Kind::Table2));
+        assert_eq!(Kind::of(&json!({ "scene": {}, "window": {} })), Some(Kind::Study));
+        assert_eq!(Kind::of(&json!({ "kind": "fronst" })), None);
+        assert_eq!(Kind::of(&json!([1])), None);
     }
 }

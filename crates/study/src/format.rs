@@ -1,13 +1,14 @@
 //! The study file: its fields, with their defaults. The doc comments are the descriptions of the JSON Schema.
 
+use super::file::Kind;
 use super::global::GlobalSearch;
-use super::kind::Kind;
-use super::vary;
 use retune_model::{NonNegative, Parameter, PerVariable, Positive, Scene};
 use retune_optim::{Limits, Objective, Options, Scale};
 use retune_solver::{Contacts, Method, Settings, Window};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
+use std::borrow::Cow;
 
 /// A study: a structure with its damper, the time window of the evaluation, and the parameters to tune. A number is in its SI unit, or a text
 /// with a unit: "20 kN/m".
@@ -107,8 +108,8 @@ pub struct Solver {
 #[serde(deny_unknown_fields)]
 pub struct Optimize {
     /// The parameters to tune; the others keep their values in `scene`.
-    #[serde(deserialize_with = "vary::read")]
-    #[schemars(schema_with = "vary::schema")]
+    #[serde(deserialize_with = "read_varied")]
+    #[schemars(schema_with = "varied_schema")]
     pub vary: Vec<Parameter>,
     /// The objective to minimise. Default: E1max in `window` at the omega of the scene.
     #[serde(default, skip_serializing_if = "Objective::is_default")]
@@ -259,4 +260,26 @@ impl Default for Refine {
         let Options { tol_x, tol_fun, max_iter, max_fun_evals, .. } = Options::default();
         Self { starts: 1, apart: 3, tol_x, tol_fun, scaled: false, max_iter, max_fun_evals }
     }
+}
+
+/// One of the list.
+struct Varied(Parameter);
+
+impl<'de> Deserialize<'de> for Varied {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name = Cow::<'de, str>::deserialize(deserializer)?;
+        let unknown = || D::Error::unknown_variant(&name, &Parameter::VARIED_SYMBOLS);
+        Parameter::varied(&name).map(Self).ok_or_else(unknown)
+    }
+}
+
+/// Reads it; a parameter that no search may vary is refused.
+fn read_varied<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Parameter>, D::Error> {
+    Ok(Vec::<Varied>::deserialize(deserializer)?.into_iter().map(|Varied(parameter)| parameter).collect())
+}
+
+/// Its schema: symbols, each with its description.
+fn varied_schema(_: &mut SchemaGenerator) -> Schema {
+    let one = |parameter: Parameter| json_schema!({ "type": "string", "const": parameter.symbol(), "description": parameter.sentence() });
+    json_schema!({ "type": "array", "minItems": 1, "items": { "oneOf": Parameter::VARIED.map(one) } })
 }

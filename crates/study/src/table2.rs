@@ -1,11 +1,10 @@
 //! The study behind Table 2: each damper's own study, beside the design the paper gives for it.
 
 use super::built_in::{PLACE, read_plan_text, text};
+use super::file::Kind;
 use super::file::{StudyError, expect, parse};
 use super::format::Study;
-use super::fronts::MOST_SAMPLES;
-use super::kind::Kind;
-use super::objective::check_quantity;
+use super::objective::{MOST_SAMPLES, check_quantity};
 use super::read::{from_text, named};
 use super::rule::Rule;
 use retune_model::{Damper, Design, Positive};
@@ -109,8 +108,7 @@ pub fn read_rows(path: &Path) -> Result<(Table2, Vec<PaperStudy>), StudyError> {
     let directory = path.parent().unwrap_or(Path::new(""));
     let mut rows: Vec<PaperStudy> = Vec::new();
     if let Some(samples) = table.samples.filter(|samples| !(2..=MOST_SAMPLES).contains(samples)) {
-        let (field, value) = ("samples".to_owned(), samples.to_string());
-        return Err(refuse(Rule::NotAllowed { field, value, allowed: "a whole number from 2 to 10000" }));
+        return Err(refuse(Rule::not_allowed("samples", samples, "a whole number from 2 to 10000")));
     }
     for row in &table.rows {
         let study_file = directory.join(&row.study);

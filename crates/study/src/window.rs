@@ -34,11 +34,11 @@ impl Span {
         let [t0, end] = [NonNegative::new(span[0]).ok(), NonNegative::new(span[1]).ok()];
         match (t0, end.and_then(|end| Positive::new(end.get()).ok())) {
             (Some(t0), Some(end)) if passes || until <= MOST_PERIODS * period => Ok(Self { t0, end }),
-            _ => Err(Rule::NotAllowed {
-                field: "window".to_owned(),
-                value: format!("settled, of a scene whose slowest transient decays by {rate} 1/s"),
-                allowed: "a scene that settles in 10,000 periods of its force: give t0 and T, or more damping",
-            }),
+            _ => Err(Rule::not_allowed(
+                "window",
+                format!("settled, of a scene whose slowest transient decays by {rate} 1/s"),
+                "a scene that settles in 10,000 periods of its force: give t0 and T, or more damping",
+            )),
         }
     }
 }
