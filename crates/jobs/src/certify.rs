@@ -7,7 +7,9 @@ mod motions;
 mod records;
 mod walls;
 
-pub use certificate::{Certificate, Short, Verdict, Walls, periodic};
+pub use certificate::{Certificate, Verdict};
+pub(crate) use certificate::{Measured, periodic};
+pub(crate) use walls::Walls;
 
 use crate::again::{Made, json};
 use crate::artefact::{Content, Kind, artefact};
@@ -65,7 +67,6 @@ pub fn certify_file(request: &Request, watch: &dyn Observer) -> Result<Certifica
     Ok(certificate)
 }
 
-/// Whether both are the same directory.
 fn is_same(one: &Path, other: &Path) -> bool {
     let [one, other] = [one, other].map(|path| path.canonicalize().ok());
     one.is_some() && one == other
@@ -81,9 +82,9 @@ pub fn certify(study: &Study) -> Result<Certificate, Error> {
 
 /// A certificate of the damper of a study that has all but the value between other walls, with that too.
 pub(crate) fn complete(study: &Study, certificate: Certificate) -> Certificate {
-    let walls = walls::other_walls(study, &certificate);
-    let records = records::other_records(study, &certificate);
-    certificate.with_walls(walls).with_records(records)
+    let (own, sensitivity) = (certificate.value, &certificate.measured.sensitivity);
+    let walls = walls::other_walls(study, own, sensitivity, certificate.strikes());
+    Certificate { walls, records: records::other_records(study, own), ..certificate }
 }
 
 /// The certificate of the damper of a study, made again.

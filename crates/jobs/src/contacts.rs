@@ -57,9 +57,6 @@ impl Known {
 
 impl Contacts {
     /// Of a run of a scene; none if it touches no wall.
-    ///
-    /// # Errors
-    /// The run fails.
     pub fn of(scene: &Scene, window: Window, settings: &Settings) -> Result<Option<Self>, SolverError> {
         let Some(damper) = scene.damper.filter(|damper| damper.contact.is_some()) else { return Ok(None) };
         let system = Coupled::new(&scene.primary, &scene.forcing, &damper);
@@ -87,7 +84,6 @@ impl Contacts {
         named.into_iter().filter_map(|(name, wall)| Some((name, wall.as_ref()?)))
     }
 
-    /// A sentence for each wall.
     pub fn words(&self) -> Vec<String> {
         self.walls().map(|(name, wall)| format!("{name}: {}", wall.words())).collect()
     }

@@ -49,7 +49,6 @@ pub fn study(study: &Study) -> String {
     lines.join("\n  ")
 }
 
-/// The law of the walls.
 fn walls(contact: &Contact) -> String {
     let surfaces = match contact {
         Contact::Hertz(surfaces) => surfaces,
@@ -104,7 +103,6 @@ fn steps(study: &Study) -> Option<String> {
     ))
 }
 
-/// The forcing in words.
 pub(crate) fn forced(forcing: &Forcing) -> String {
     let at = format!("at omega = {} rad/s", forcing.frequency.get());
     match forcing.source {
@@ -176,7 +174,6 @@ fn given(History { of, course }: &History) -> String {
     }
 }
 
-/// Where the refinements of a search start.
 fn starts(search: &Search) -> String {
     let mut from = Vec::new();
     if let Some((variables, grid)) = &search.surf {

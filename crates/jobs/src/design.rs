@@ -17,11 +17,11 @@ mod tmd;
 mod typed;
 mod words;
 
-pub use candidate::{Candidate, What};
-pub use comparison::{Comparison, Cost};
+use comparison::Comparison;
 pub use modes::structure;
-pub use requirements::{Dampers, Driving, Requirements, Wall, Wish};
-pub use tmd::Formula;
+use requirements::Dampers;
+pub use requirements::{Driving, Requirements};
+use tmd::Formula;
 pub use typed::{Typed, Wishes};
 
 use crate::artefact::{Content, Kind, artefact};

@@ -160,9 +160,6 @@ impl Designs {
 
 /// E1max of a row with a design, computed again by the objective of the study of its damper: on the samples that the plan names, or else
 /// on those of the study.
-///
-/// # Errors
-/// The input of the results cannot be read.
 pub(crate) fn again(place: &Path, _name: &str) -> Result<Source, Error> {
     let resolved = Resolved::read(place)?;
     let samples = resolved.plan["samples"].as_u64().map(|samples| samples as usize);

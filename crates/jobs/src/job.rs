@@ -9,27 +9,20 @@ use retune_store::{Begin, Directory, Extent, Identity, Order, manifest};
 use retune_study::{Solver, Study, is_built_in};
 use std::path::{Path, PathBuf};
 
-/// A job, ready to be done.
 pub struct Job {
-    /// Its kind.
     pub kind: &'static Kind,
-    /// The directory of its results.
     pub out: PathBuf,
-    /// The request for them.
     pub order: Order,
     /// The file that holds the complete input, and its text.
     pub input: (&'static str, String),
     /// The file without which its results are not complete.
     pub answer: String,
-    /// The solvers of its studies.
     pub solvers: Vec<Solver>,
     /// The beginning of the names of its files, if it makes a part of the results and leaves the others as they are.
     pub only: Option<String>,
 }
 
-/// What a job has made.
 pub struct Made<T> {
-    /// The result.
     pub answer: T,
     /// The last lines on screen, if any.
     pub report: String,
@@ -37,7 +30,6 @@ pub struct Made<T> {
     pub parts: Vec<Directory>,
 }
 
-/// The end of a job.
 #[derive(Debug)]
 pub enum Done<T> {
     /// It was done: its result.
@@ -48,9 +40,6 @@ pub enum Done<T> {
 
 impl Job {
     /// The job of a kind on one study.
-    ///
-    /// # Errors
-    /// Serialisation fails, which no known study causes.
     pub fn of_study(kind: &'static Kind, study: &Study, out: &Path, order: &Order) -> Result<Self, Error> {
         let input = (resolved::ONE, resolved::study_text(study)?);
         let (out, order, answer) = (out.to_owned(), order.clone(), kind.answer.to_owned());
@@ -58,9 +47,6 @@ impl Job {
     }
 
     /// The job of a kind on several studies: each with the name of its damper, under a plan.
-    ///
-    /// # Errors
-    /// Serialisation fails, which no known study causes.
     pub fn of_studies<'a>(
         kind: &'static Kind,
         request: &Request,
@@ -73,15 +59,11 @@ impl Job {
         Ok(Self { kind, out, order, input, answer: kind.answer.to_owned(), solvers, only: None })
     }
 
-    /// The identity of its results.
     pub fn identity(&self) -> Identity {
         Identity::of(&self.input.1)
     }
 
     /// Does the work and publishes its results. The work can be resumed until the directory is finished.
-    ///
-    /// # Errors
-    /// The directory cannot be opened or written to, or `work` fails.
     pub fn make<T>(
         &self,
         watch: &dyn Observer,
@@ -105,9 +87,6 @@ impl Job {
     }
 
     /// Does the whole job on the threads of its request and reports its end to the observer; `work` may not report it.
-    ///
-    /// # Errors
-    /// As [`Self::make`].
     pub fn run<T: Send>(
         &self,
         request: &Request,
@@ -141,9 +120,6 @@ impl Job {
 }
 
 /// Opens a directory of results and reports it to the observer.
-///
-/// # Errors
-/// As [`Directory::open`].
 pub fn open(
     path: &Path,
     order: &Order,

@@ -137,7 +137,6 @@ fn numbers(plan: &Value, row: Row, study: &Study) -> Option<Vec<f64>> {
     Some(vec![first, impacts as f64, expected.1 as f64, evaluations(method, &found) as f64])
 }
 
-/// A run, and its touch-downs.
 fn run(scene: &Scene, window: Window, settings: &Settings) -> Option<(Response, usize)> {
     let response = simulate(scene, window, settings).ok()?;
     Some((response, touch_downs(scene, window, settings).ok()?.len()))

@@ -27,12 +27,10 @@ pub const TOLD: [Measure; 5] = [
 /// What a design needs, and what others need.
 #[derive(Clone, Debug, Serialize)]
 pub struct Needs {
-    /// The design.
     pub damper: Largest,
     /// What its contacts are like in the run with the largest contact force, whole, from rest on; none if it touches no wall.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contacts: Option<Contacts>,
-    /// No damper.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub none: Option<Largest>,
     /// The best damper of the same mass without walls, for the same objective, whatever the limits and bounds of the study.
@@ -44,20 +42,17 @@ pub struct Needs {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Largest(pub retune_optim::Needs);
 
-/// The best damper without walls.
 #[derive(Clone, Debug, Serialize)]
 pub struct Linear {
     /// Its spring, N/m.
     pub k2: f64,
     /// Its damping, N·s/m.
     pub c2: f64,
-    /// The value of the objective.
     #[serde(flatten)]
     value: Amount,
     /// Why the search could not come to it, where it is better than what it came to.
     #[serde(skip_serializing_if = "Option::is_none")]
     better_but: Option<String>,
-    /// What it needs.
     pub needs: Largest,
 }
 

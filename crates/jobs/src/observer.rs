@@ -7,14 +7,8 @@ use std::path::Path;
 /// Receives the output and the progress of a job. A command line prints them, a page may draw them, [`Silent`] ignores them.
 pub trait Observer: Sync {
     /// Receives a line of the result, as soon as it is known.
-    ///
-    /// # Errors
-    /// It could not be shown; the job ends.
     fn result(&self, line: &str) -> Result<(), Error>;
     /// Receives a line of the log.
-    ///
-    /// # Errors
-    /// As [`Self::result`].
     fn log(&self, line: &str) -> Result<(), Error>;
     /// Receives a warning; the job continues.
     fn warn(&self, words: &str);
@@ -23,22 +17,15 @@ pub trait Observer: Sync {
     /// From now on the job can be resumed if the process ends.
     fn resumable(&self);
     /// The job is done, and its answer stands in a file, see [`crate::answer`].
-    ///
-    /// # Errors
-    /// As [`Self::result`].
     fn answered(&self, _file: &Path) -> Result<(), Error> {
         Ok(())
     }
     /// The job is done, and its answer as JSON stands in no file.
-    ///
-    /// # Errors
-    /// As [`Self::result`].
     fn answered_with(&self, _json: &Value) -> Result<(), Error> {
         Ok(())
     }
 }
 
-/// The progress of a stage.
 pub trait Progress: Sync {
     /// One evaluation is known from an earlier run and takes no time; [`Self::inc`] counts it as well.
     fn known(&self);
@@ -46,11 +33,9 @@ pub trait Progress: Sync {
     fn inc(&self, more: u64);
     /// The best so far, in words.
     fn best(&self, _words: &str) {}
-    /// The stage is finished.
     fn finish(&self);
 }
 
-/// Ignores everything.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Silent;
 

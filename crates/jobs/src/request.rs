@@ -5,10 +5,8 @@ use retune_store::{Begin, Order};
 use retune_study::{Study, found_in, name_from};
 use std::path::{Path, PathBuf};
 
-/// The options of a job.
 #[derive(Clone, Debug, Default)]
 pub struct Request {
-    /// The study file.
     pub study: PathBuf,
     /// Directory of the results; by default that of the job.
     pub out: Option<PathBuf>,
@@ -44,19 +42,12 @@ impl Request {
 
     /// The same with the directory of results along a parameter: by default `results/<kind>-<study>-<rest>`, of a design that a search found
     /// `results/<kind>-<study>-tuned-<rest>`.
-    ///
-    /// # Errors
-    /// The study file cannot be read.
     pub fn placed(&self, kind: &str, study: &Study, rest: &str) -> Result<Self, Error> {
         let tuned = if found_in(&self.study)?.is_some() { "-tuned" } else { "" };
         let out = || Path::new("results").join(format!("{kind}-{}{tuned}-{rest}", study.name()));
         Ok(Self { out: Some(self.out.clone().unwrap_or_else(out)), ..self.clone() })
     }
 
-    /// Runs `work` on the threads of the request.
-    ///
-    /// # Errors
-    /// The threads cannot be started, or `work` fails.
     pub fn on_threads<T: Send>(&self, work: impl FnOnce() -> Result<T, Error> + Send) -> Result<T, Error> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads.unwrap_or(0).into()).build()?;
         pool.install(work)
@@ -64,9 +55,6 @@ impl Request {
 }
 
 /// A message with the directory of the results and their list.
-///
-/// # Errors
-/// The directory cannot be read.
 pub fn where_results_are(out: &Path) -> Result<String, Error> {
     let refuse = |source| retune_store::Error::Output { path: PathBuf::from(out), source };
     let entries = std::fs::read_dir(out).map_err(refuse)?;

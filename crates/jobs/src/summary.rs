@@ -97,7 +97,6 @@ pub struct MadeBy {
     objective: Objective,
 }
 
-/// A value for each wall of the cavity.
 #[derive(Clone, Copy, Debug, Serialize)]
 struct Walls<T> {
     primary: T,

@@ -61,7 +61,7 @@ pub fn table2(request: &Request, watch: &dyn Observer) -> Result<Done<Designs>, 
                     .map_or(again.found, |damper| TunedDamper::of(&damper, study.varied())),
                 printed: printed.map(Positive::get),
                 e1_max: paper.value,
-                verdict: certificate.short().verdict(),
+                verdict: certificate.verdict(),
                 reason: certificate.reason().to_owned(),
                 needs: Largest::of(study, &study.scene),
                 ..again.clone()

@@ -1,25 +1,26 @@
 //! `optimize`: from a study to a tuned damper, its log and its figures.
 
 mod again;
-pub mod band;
-pub(crate) mod choice;
-pub mod descent;
+pub(crate) mod band;
+mod choice;
+pub(crate) mod descent;
 pub mod ends;
-pub mod files;
-pub(crate) mod global;
+pub(crate) mod files;
+mod global;
 pub mod log;
 pub mod merge;
 pub mod objective;
-pub(crate) mod optimum;
-pub mod pictures;
-pub(crate) mod refine;
+mod optimum;
+pub(crate) mod pictures;
+mod refine;
 mod report;
-pub(crate) mod surf;
+mod surf;
 mod tmd;
-pub(crate) mod valley;
+mod valley;
 
-pub use files::OPTIMUM;
-pub use optimum::{Found, Optimum, table2_header, table2_row};
+pub(crate) use files::OPTIMUM;
+pub use optimum::Optimum;
+pub(crate) use optimum::{Found, table2_header, table2_row};
 
 use crate::artefact::{Content, Kind, artefact};
 use crate::certify;
@@ -112,7 +113,6 @@ fn run(
     Ok(done)
 }
 
-/// The search of a study.
 fn searched(study: &Study) -> Result<Search, Error> {
     study.search().map_err(Error::rule(study))
 }
@@ -131,7 +131,6 @@ fn tuned(
     optimum
 }
 
-/// Searches and writes.
 fn search_and_write(
     study: &Study,
     search: &Search,
@@ -166,7 +165,7 @@ fn search_and_write(
     let searched =
         Searched { surf: surf.as_ref(), explored: explored.as_ref(), basins, passed_over, valleys };
     results.write_json(certify::FILE, &certificate)?;
-    let optimum = Optimum::new(study, search, searched, &refined, summary, found, certificate.short())?;
+    let optimum = Optimum::new(study, search, searched, &refined, summary, found, certificate)?;
     results.write_json(OPTIMUM, &optimum)?;
     pictures::draw(study, search, surf.as_ref(), &refined, results)?;
     let band = if study.objective().omega.is_some() { band::write(study, design, results)? } else { None };
@@ -177,7 +176,6 @@ fn search_and_write(
         explored: explored.as_ref(),
         refined: &refined,
         optimum: &optimum,
-        certificate: &certificate,
         evaluation: &found,
         tuned: design,
         worst: scene,

@@ -46,7 +46,6 @@ pub fn verify(path: &Path, sample: usize, within: f64, watch: &dyn Observer) -> 
     report.end(path)
 }
 
-/// The kinds of jobs.
 static KINDS: [&Kind; 10] = [
     &tune::KIND,
     &certify::KIND,

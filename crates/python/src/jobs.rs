@@ -6,7 +6,7 @@ use crate::pool::{check, pool};
 use crate::problem::{Core, json};
 use pyo3::prelude::*;
 use retune_jobs::design::Wishes;
-use retune_jobs::job::Done;
+use retune_jobs::Done;
 use retune_jobs::{Request, tune, verify as verification};
 use retune_model::{Of, Parameter, Positive, Surfaces, unit};
 use retune_store::Begin;

@@ -5,27 +5,22 @@ use crate::colour::Colour;
 
 /// How a line is interrupted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "their names say what they are")]
 pub enum Dash {
-    /// Not at all.
     Solid,
-    /// Long dashes.
     Long,
-    /// Short dashes.
     Short,
-    /// Dots.
     Dots,
-    /// Dashes and dots in turn.
     DashDot,
 }
 
 /// How a line is drawn.
 #[derive(Clone, Copy, Debug)]
+#[expect(missing_docs, reason = "their names say what they are")]
 pub struct Stroke {
-    /// Its colour.
     pub colour: Colour,
     /// Its width, pt.
     pub width: f64,
-    /// Its dashes.
     pub dash: Dash,
 }
 
@@ -43,27 +38,21 @@ impl Stroke {
 
 /// The shape of a mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "their names say what they are")]
 pub enum Shape {
-    /// A disc.
     Disc,
-    /// A ring.
     Ring,
-    /// A filled square.
     Square,
-    /// An empty square.
     Frame,
-    /// A filled triangle.
     Triangle,
-    /// A cross.
     Cross,
 }
 
 /// How a point is marked.
 #[derive(Clone, Copy, Debug)]
+#[expect(missing_docs, reason = "their names say what they are")]
 pub struct Mark {
-    /// Its shape.
     pub shape: Shape,
-    /// Its colour.
     pub colour: Colour,
     /// Its diameter, pt.
     pub size: f64,
@@ -80,87 +69,62 @@ impl Mark {
 
 /// A layer of a chart. What lies beyond the axes is cut off.
 #[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "their names say what they are")]
 pub enum Layer {
     /// A line through points; values that are not finite break it.
     Line {
-        /// Its points.
         points: Vec<(f64, f64)>,
-        /// Its look.
         stroke: Stroke,
     },
     /// A line that keeps the height of a point until the next one.
     Steps {
-        /// Its points.
         points: Vec<(f64, f64)>,
-        /// Its look.
         stroke: Stroke,
     },
-    /// Many dots, of which those that cover one another are drawn once.
+    /// Many dots of a diameter in pt, of which those that cover one another are drawn once.
     Dots {
-        /// Their points.
         points: Vec<(f64, f64)>,
-        /// Their colour.
         colour: Colour,
-        /// Their diameter, pt.
         size: f64,
     },
     /// Points that are marked one by one.
     Marks {
-        /// The points.
         points: Vec<(f64, f64)>,
-        /// Their look.
         mark: Mark,
     },
     /// A filled rectangle; infinite ends reach to the frame.
     Band {
-        /// Its left and right end.
         x: (f64, f64),
-        /// Its lower and upper end.
         y: (f64, f64),
-        /// Its colour.
         colour: Colour,
-        /// Its opacity, 0 to 1.
         opacity: f64,
     },
-    /// A coloured cell for each value: the index of the first side varies fastest.
+    /// A coloured cell for each value, between edges along both axes: the index of the first side varies fastest. Values that are not finite
+    /// are grey; `colours` says what the colours mean.
     Map {
-        /// The edges of the cells along both axes.
         edges: [Vec<f64>; 2],
-        /// The values; those that are not finite are grey.
         values: Vec<f64>,
-        /// What the colours mean.
         colours: Axis,
     },
     /// A vertical line over the whole height.
     Upright {
-        /// Its abscissa.
         x: f64,
-        /// Its look.
         stroke: Stroke,
     },
     /// A horizontal line over the whole width.
     Level {
-        /// Its ordinate.
         y: f64,
-        /// Its look.
         stroke: Stroke,
     },
-    /// A text on the chart.
     Text {
-        /// Its place.
         at: (f64, f64),
-        /// Its words.
         text: String,
-        /// How it stands there.
         stand: Stand,
     },
     /// A name on the right of the frame for a line that ends at a place. Names are moved apart, each with a thin line to its place.
     Name {
-        /// The place.
         at: (f64, f64),
-        /// The name.
         text: String,
-        /// The mark before it, if any.
         mark: Option<Mark>,
     },
 }
@@ -185,12 +149,10 @@ pub enum Stand {
 
 /// A chart.
 #[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "their names say what they are")]
 pub struct Chart {
-    /// The title above it.
     pub title: String,
-    /// The abscissa.
     pub x: Axis,
-    /// The ordinate.
     pub y: Axis,
     /// The layers, from back to front.
     pub layers: Vec<Layer>,
@@ -207,12 +169,10 @@ impl Chart {
 
 /// The symbol of an entry in a legend.
 #[derive(Clone, Copy, Debug)]
+#[expect(missing_docs, reason = "their names say what they are")]
 pub enum Key {
-    /// A line.
     Line(Stroke),
-    /// A line with a mark.
     Marked(Stroke, Mark),
-    /// A mark.
     Mark(Mark),
     /// An area: its colour and opacity.
     Area(Colour, f64),

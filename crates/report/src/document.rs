@@ -1,6 +1,7 @@
 //! A page of results as data: written once as Markdown, for readers of the repository, and once as HTML, which needs no network.
 
 use crate::html::{Table, figure, head, link};
+use crate::table::Column;
 use crate::{Drawing, table};
 use maud::{DOCTYPE, Markup, html};
 use serde::{Deserialize, Serialize};
@@ -76,7 +77,7 @@ pub struct Statement {
 
 /// A figure with its caption that stands in a file of its own, too.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Picture {
+pub struct Figure {
     /// The name of its file.
     pub file: String,
     /// As SVG.
@@ -100,10 +101,10 @@ pub enum Block {
     List(Vec<String>),
     /// A table: its caption, its head, its rows.
     Table(String, Vec<String>, Vec<Vec<String>>),
-    /// A figure: its file, the drawing, its caption.
-    Figure(&'static str, Drawing, String),
-    /// A figure with a link to its file.
-    Picture(Picture),
+    /// A figure, which is a file of the page.
+    Figure(Figure),
+    /// A figure with a link to its file, which somebody else writes.
+    Linked(Figure),
     /// Links to files beside the page.
     Files(Vec<String>),
     /// Elements of a page as HTML alone, which Markdown leaves out.
@@ -130,14 +131,10 @@ pub type Section = (&'static str, &'static str, Vec<Block>);
 
 impl Document {
     /// Its files, each with its name: both forms and all figures.
-    pub fn files(&self) -> Vec<(&'static str, String)> {
+    pub fn files(&self) -> Vec<(&str, String)> {
         let blocks = self.opening.iter().chain(self.sections.iter().flat_map(|(.., blocks)| blocks));
-        let figure = |block: &Block| match block {
-            Block::Figure(file, drawing, _) => Some((*file, drawing.wide.clone())),
-            _ => None,
-        };
         let pages = [("README.md", self.markdown()), ("report.html", self.html())];
-        blocks.filter_map(figure).chain(pages).collect()
+        blocks.filter_map(Block::file).chain(pages).collect()
     }
 
     /// As Markdown.
@@ -209,8 +206,8 @@ impl Block {
     }
 
     /// A figure: its file, the drawing, its caption.
-    pub fn figure(file: &'static str, drawing: impl Into<Drawing>, caption: impl Into<String>) -> Self {
-        Self::Figure(file, drawing.into(), caption.into())
+    pub fn figure(file: &str, drawing: impl Into<Drawing>, caption: impl Into<String>) -> Self {
+        Self::Figure(Figure { file: file.to_owned(), drawing: drawing.into(), caption: caption.into() })
     }
 
     /// Links to files beside the page.
@@ -220,12 +217,19 @@ impl Block {
 
     /// A table as a block.
     pub fn of_table(caption: impl Into<String>, table: &table::Table) -> Self {
-        let head = table.columns.iter().map(|column| match &*column.unit {
-            "" => column.name.clone(),
-            unit => format!("{}, {unit}", column.name),
-        });
         let texts = |row: &Vec<table::Cell>| row.iter().map(ToString::to_string).collect();
-        Self::Table(caption.into(), head.collect(), table.rows.iter().map(texts).collect())
+        Self::table(
+            caption,
+            table.columns.iter().map(Column::heading),
+            table.rows.iter().map(texts).collect(),
+        )
+    }
+
+    fn file(&self) -> Option<(&str, String)> {
+        match self {
+            Self::Figure(Figure { file, drawing, .. }) => Some((file, drawing.wide.clone())),
+            _ => None,
+        }
     }
 
     fn markdown(&self) -> String {
@@ -252,8 +256,9 @@ impl Block {
                 let rows: String = rows.iter().map(|row| format!("| {} |\n", row.join(" | "))).collect();
                 format!("{caption}\n\n| {} |\n| {rule} |\n{rows}\n", head.join(" | "))
             }
-            Self::Figure(file, _, caption) => format!("![{caption}]({file})\n\n"),
-            Self::Picture(Picture { file, caption, .. }) => format!("![{caption}]({file})\n\n"),
+            Self::Figure(Figure { file, caption, .. }) | Self::Linked(Figure { file, caption, .. }) => {
+                format!("![{caption}]({file})\n\n")
+            }
             Self::Files(files) => {
                 let links: Vec<String> = files.iter().map(|file| format!("[{file}]({file})")).collect();
                 format!("{}\n\n", links.join(", "))
@@ -278,8 +283,8 @@ impl Block {
                 rows.iter().for_each(|row| table.row(row.iter().cloned()));
                 table.markup()
             }
-            Self::Figure(_, drawing, caption) => figure(drawing, html! { (caption) }),
-            Self::Picture(Picture { file, drawing, caption }) => {
+            Self::Figure(Figure { drawing, caption, .. }) => figure(drawing, html! { (caption) }),
+            Self::Linked(Figure { file, drawing, caption }) => {
                 figure(drawing, html! { (caption) " " (link(file)) })
             }
             Self::Files(files) => {
@@ -345,11 +350,10 @@ mod tests {
             verdict: Verdict::of_all(&[true, false]),
             found: "1 of 2".to_owned(),
         };
-        let mut table =
-            table::Table::new([table::Column::new("k1", "N/m"), table::Column::new("motion", "")]);
+        let mut table = table::Table::new([Column::new("k1", "N/m"), Column::new("motion", "")]);
         table.push(crate::cells![2.5, "a, b"]);
         let drawing = Drawing::from("<svg></svg>".to_owned());
-        let picture = Picture { file: "a.svg".to_owned(), drawing, caption: "A figure.".to_owned() };
+        let picture = Figure { file: "a.svg".to_owned(), drawing, caption: "A figure.".to_owned() };
         let document = Document {
             title: "T".to_owned(),
             command: "retune reproduce",
@@ -359,7 +363,7 @@ mod tests {
                 "One",
                 vec![
                     Block::Statements(vec![statement]),
-                    Block::Picture(picture),
+                    Block::Linked(picture),
                     Block::of_table("Motions", &table),
                     Block::MadeBy("runs".to_owned()),
                 ],

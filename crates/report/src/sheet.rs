@@ -65,16 +65,7 @@ impl Sheet {
 
     /// A figure as wide as a page, one chart a row, without legend and caption.
     pub fn page(title: impl Into<String>, description: impl Into<String>, charts: Vec<Chart>) -> Self {
-        Self {
-            title: title.into(),
-            description: description.into(),
-            width: Width::Page,
-            charts,
-            columns: 1,
-            stacked: false,
-            legend: Vec::new(),
-            caption: Vec::new(),
-        }
+        Self { description: description.into(), width: Width::Page, ..Self::of(title, charts) }
     }
 
     /// The words of its legend, one after the other.

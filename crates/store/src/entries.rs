@@ -3,7 +3,6 @@
 use std::fs::File;
 use std::path::Path;
 
-/// The names in a directory, sorted.
 pub fn names(directory: &Path) -> std::io::Result<Vec<String>> {
     let mut names = Vec::new();
     for entry in std::fs::read_dir(directory)? {

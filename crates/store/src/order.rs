@@ -146,7 +146,6 @@ pub fn may_write(path: &Path, inputs: &[&Path], head: &str) -> Result<(), Error>
     }
 }
 
-/// Whether both are the same file.
 fn is_same(one: &Path, other: &Path) -> bool {
     let [one, other] = [one, other].map(|path| path.canonicalize().ok());
     one.is_some() && one == other

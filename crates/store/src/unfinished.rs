@@ -95,7 +95,6 @@ impl Unfinished {
     }
 }
 
-/// The warning about a damaged journal.
 fn damaged(path: &Path, kept: u64, Damage { head, lines }: Damage) -> String {
     let first = "its first line is damaged, but its records are of this study";
     let rest = format!(

@@ -36,9 +36,6 @@ pub enum StudyError {
 }
 
 /// Reads a file as text, without a byte-order mark.
-///
-/// # Errors
-/// The file cannot be read or is not UTF-8.
 pub(super) fn read_text(path: &Path) -> Result<String, StudyError> {
     let file = || path.display().to_string();
     let bytes = std::fs::read(path).map_err(|source| StudyError::Unreadable { file: file(), source })?;
@@ -48,9 +45,6 @@ pub(super) fn read_text(path: &Path) -> Result<String, StudyError> {
 }
 
 /// The text with every number in its SI unit, see [`units`].
-///
-/// # Errors
-/// [`StudyError::Field`]: the first that has no unit of its field.
 pub(super) fn in_si<'a>(text: &'a str, file: &str) -> Result<Cow<'a, str>, StudyError> {
     units::in_si(text).map_err(|units::Refused { line, column, problem }| StudyError::Field {
         file: file.to_owned(),
@@ -61,9 +55,6 @@ pub(super) fn in_si<'a>(text: &'a str, file: &str) -> Result<Cow<'a, str>, Study
 }
 
 /// Parses the text of `file`; an error names the field.
-///
-/// # Errors
-/// [`StudyError::Field`].
 pub(super) fn parse<T: DeserializeOwned + Serialize>(text: &str, file: &str) -> Result<T, StudyError> {
     let refuse = |path: Option<String>, error: &serde_json::Error| StudyError::Field {
         file: file.to_owned(),
@@ -94,9 +85,6 @@ pub fn kind_of(path: &Path) -> Result<Kind, StudyError> {
 }
 
 /// Refuses the text of a file that is recognised as one of another kind.
-///
-/// # Errors
-/// [`StudyError::Kind`].
 pub(super) fn expect(wanted: Kind, text: &str, file: &str) -> Result<(), StudyError> {
     let json: Result<Value, _> = serde_json::from_str(text);
     match json.ok().as_ref().and_then(Kind::of) {

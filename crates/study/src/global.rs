@@ -67,9 +67,6 @@ impl GlobalSearch {
     }
 
     /// The box that is searched.
-    ///
-    /// # Errors
-    /// The first [`Rule`] that is broken.
     pub(super) fn space(&self, variables: &[Parameter], bounds: &[Bounds]) -> Result<Space, Rule> {
         for (name, share) in [("spread", self.spread), ("basin", self.basin), ("apart", self.apart)] {
             if !(share > 0.0 && share <= 1.0) {

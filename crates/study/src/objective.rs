@@ -14,9 +14,6 @@ pub(super) const MOST_SAMPLES: usize = 10_000;
 const MOST_STARTS: usize = 1000;
 
 /// Checks the rules that serde cannot; `path` is that of this objective in the study.
-///
-/// # Errors
-/// The first [`Rule`] that is broken.
 pub(super) fn check(objective: &Objective, path: &str, scene: &Scene) -> Result<(), Rule> {
     let forcing = &scene.forcing;
     let omega = forcing.frequency.get();
@@ -153,9 +150,6 @@ fn check_records(objective: &Objective, path: &str, own: &Forcing) -> Result<(),
 }
 
 /// Refuses a study that makes another quantity than E1max small, for tables that hold energies.
-///
-/// # Errors
-/// [`Rule::NotAllowed`].
 pub(super) fn check_quantity(study: &Study) -> Result<(), Rule> {
     match study.quantity() {
         Measure::Energy => Ok(()),
@@ -168,9 +162,6 @@ pub(super) fn check_quantity(study: &Study) -> Result<(), Rule> {
 }
 
 /// Checks the rules that serde cannot; `end` is the end of the run, s.
-///
-/// # Errors
-/// The [`Rule`] that is broken.
 pub(super) fn check_limits(limits: &Limits, end: f64) -> Result<(), Rule> {
     match limits.from {
         Some(from) if from.get() >= end => {

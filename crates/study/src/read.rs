@@ -49,9 +49,6 @@ pub fn read(path: &Path) -> Result<Study, StudyError> {
 }
 
 /// Reads a study that a plan names, which may be built in, as [`read`] does.
-///
-/// # Errors
-/// As [`read`].
 pub(super) fn named(path: &Path) -> Result<Study, StudyError> {
     if is_built_in(path) {
         from_text(&read_plan_text(path)?, &path.display().to_string())

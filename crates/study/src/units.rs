@@ -20,9 +20,6 @@ const DEEPEST: usize = 128;
 
 /// The text with every number that has a unit as one in its SI unit. A text that is not JSON comes back as it is, as far as it is none: the
 /// parser says what is wrong with it.
-///
-/// # Errors
-/// The first that is [`Refused`].
 pub(super) fn in_si(text: &str) -> Result<Cow<'_, str>, Refused> {
     let mut scan = Scan { text, at: 0, path: Vec::new(), found: Vec::new() };
     // What stops early is told by the parser.

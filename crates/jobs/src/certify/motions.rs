@@ -22,7 +22,6 @@ const FOLLOWED: f64 = 0.8;
 /// A motion counts that has by this factor more than the runs from rest.
 pub(super) const NOTABLE: f64 = 1.05;
 
-/// What was found.
 pub(super) struct Found {
     pub motions: Motions,
     /// None where the force has no amplitude.
@@ -37,7 +36,6 @@ pub(super) struct Place {
     goal: Goal,
     band: [f64; 2],
     starts: usize,
-    /// The value of the runs from rest.
     pub from_rest: f64,
 }
 
@@ -49,9 +47,6 @@ pub(super) struct AtForce {
 }
 
 /// Finds them, with the largest value of every measure over all. None where there is nothing to find: the force has no period, or the damper strikes nothing.
-///
-/// # Errors
-/// A scene in the band cannot be run.
 pub(super) fn coexisting(
     scene: &Scene,
     own: &Evaluation,
@@ -151,7 +146,6 @@ impl Place {
         Plan { samples: SAMPLES, starts: self.starts, ..Plan::over(Parameter::Omega, self.band) }
     }
 
-    /// The motions for a multiple of the force.
     fn at(&self, times: f64, settings: &Settings) -> Result<AtForce, Unusable> {
         let scene = with_force(&self.scene, times)?;
         // A steady motion whose damper reaches a wall there has no value: that of the linear one is compared with.

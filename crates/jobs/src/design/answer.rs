@@ -14,7 +14,6 @@ use std::path::Path;
 /// A value from rest on that exceeds a limit by more than this share is told.
 const ABOVE: f64 = 1e-3;
 
-/// The whole answer on screen.
 pub(super) fn answer(requirements: &Requirements, compared: &Comparison, out: &Path) -> String {
     let broken = broken_at_spaces();
     let fill = |line: String| textwrap::fill(&line, &broken);
@@ -60,7 +59,6 @@ pub(super) fn rows(requirements: &Requirements, compared: &Comparison) -> Vec<Ve
     rows
 }
 
-/// The comparison on screen.
 fn table(requirements: &Requirements, compared: &Comparison) -> String {
     let head: Vec<String> = std::iter::once("largest, where".to_owned())
         .chain(compared.all().map(|of| of.what.name().to_owned()))

@@ -5,7 +5,7 @@ use super::question::question;
 use super::requirements::{Dampers, Requirements, Wish};
 use super::words::{parameters, sized};
 use super::{Formula, ssvi, tmd};
-use crate::certify::{Certificate, Short, Verdict, judge};
+use crate::certify::{Certificate, Verdict, judge};
 use crate::{Error, Observer};
 use retune_model::{Design, Measure, Parameter, Scene};
 use retune_optim::{Limit, Need};
@@ -48,9 +48,9 @@ pub struct Comparison {
     /// Mass of the lightest TMD that would keep the limits, kg, where that of the mass that is given does not.
     pub lightest: Option<f64>,
     /// How sure the one to build is.
-    pub certificate: Option<Short>,
+    pub certificate: Option<Certificate>,
     /// How sure the SSVI NES is, where it would be better than the TMD.
-    pub ssvi_certificate: Option<Short>,
+    pub ssvi_certificate: Option<Certificate>,
 }
 
 /// What a limit costs.
@@ -95,7 +95,6 @@ impl Comparison {
     }
 }
 
-/// A study with a design in its scene.
 fn with(study: &Study, value: impl Fn(Parameter) -> f64) -> Result<Study, Error> {
     let no_damper = || Error::Rule { name: study.name().to_owned(), rule: Rule::NoDamper };
     let design = Design::new(value).map_err(|(_, source)| Error::from(source))?;
@@ -113,7 +112,6 @@ fn tmd_of(study: &Study, [k2, c2]: [f64; 2]) -> Result<Candidate, Error> {
     Ok(Candidate::new(What::Tmd, &study)?)
 }
 
-/// The TMD of a formula.
 fn by(requirements: &Requirements, study: &Study, formula: Formula) -> Result<(Formula, Candidate), Error> {
     let mut tmd = tmd_of(study, [formula.k2, formula.c2])?;
     tmd.feasible &= requirements.k2_max.is_none_or(|most| formula.k2 <= most);
@@ -137,7 +135,7 @@ fn striking<'a>(
 
 /// How much a damper may be trusted: 0 of the best verdict.
 fn doubt(certificate: &Certificate) -> u8 {
-    match certificate.verdict {
+    match certificate.judged.verdict {
         Some(Verdict::Robust) => 0,
         Some(Verdict::Edge) => 1,
         Some(Verdict::FromRest) => 2,
@@ -169,9 +167,6 @@ fn trusted(
 }
 
 /// Makes the whole comparison; what is known is told at once.
-///
-/// # Errors
-/// As of the searches, the runs and the journal.
 pub(super) fn compare(
     requirements: &Requirements,
     [tmd_study, ssvi_study]: [&Study; 2],
@@ -219,10 +214,9 @@ pub(super) fn compare(
     };
     let lightest = if tmd.feasible { None } else { lightest(requirements)? };
     let chosen = dampers.into_iter().flatten().find(|damper| Some(damper.what) == choice);
-    let ssvi_certificate = judged.as_ref().map(Certificate::short);
     let certificate = match choice {
-        Some(What::Ssvi) => ssvi_certificate.clone(),
-        _ => chosen.map(|damper| judge(&damper.study)).transpose()?.map(|certificate| certificate.short()),
+        Some(What::Ssvi) => judged.clone(),
+        _ => chosen.map(|damper| judge(&damper.study)).transpose()?,
     };
     Ok(Comparison {
         goal,
@@ -236,7 +230,7 @@ pub(super) fn compare(
         detuned,
         lightest,
         certificate,
-        ssvi_certificate,
+        ssvi_certificate: judged,
     })
 }
 
@@ -357,8 +351,8 @@ impl Serialize for Comparison {
         json!({
             "goal": self.goal,
             "build": self.choice,
-            "certificate": self.certificate,
-            "SSVI_NES_certificate": self.ssvi_certificate,
+            "certificate": self.certificate.as_ref().map(Certificate::short),
+            "SSVI_NES_certificate": self.ssvi_certificate.as_ref().map(Certificate::short),
             "candidates": self.all().collect::<Vec<_>>(),
             "formulas": self.formulas.iter().map(by).collect::<Vec<_>>(),
             "limits": costs,

@@ -52,7 +52,6 @@ fn curve(of: &Candidate, [from, to]: [f64; 2]) -> Curve {
     (0..points).into_par_iter().map(value).collect()
 }
 
-/// The figure.
 pub(super) fn curves(requirements: &Requirements, compared: &Comparison) -> Drawing {
     let size = unit::FREQUENCY
         .iter()

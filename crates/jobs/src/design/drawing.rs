@@ -10,7 +10,6 @@ use retune_study::rounded;
 
 const MM: f64 = 1e3;
 
-/// The figure.
 pub(super) fn drawing(of: &Candidate) -> Drawing {
     let stroke = MM * of.value(Measure::Stroke);
     let begin = MM * of.from_rest.get(Measure::Stroke).value;

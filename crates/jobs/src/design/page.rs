@@ -9,7 +9,6 @@ use super::words::{parameters, sized, tuning};
 use super::{curves, drawing};
 use retune_report::document::{Block, Document};
 
-/// The page.
 pub(super) fn page(requirements: &Requirements, compared: &Comparison) -> Document {
     let names: Vec<&str> = compared.all().map(|of| of.what.name()).collect();
     let head: Vec<String> =

@@ -10,7 +10,6 @@ pub(super) fn question(requirements: &Requirements) -> Vec<String> {
     asked(requirements).iter().map(|line| textwrap::fill(line, &broken)).collect()
 }
 
-/// What was asked.
 pub(super) fn asked(requirements: &Requirements) -> Vec<String> {
     let own = natural(requirements);
     let critical = 2.0 * requirements.m1 * requirements.natural_frequency();
@@ -44,7 +43,6 @@ pub(super) fn asked(requirements: &Requirements) -> Vec<String> {
     ]
 }
 
-/// A limit in words.
 pub(super) fn limit(requirements: &Requirements, wish: Wish) -> String {
     format!("{} at most {}", wish.name(), sized(requirements.allowed(wish), wish.unit()))
 }

@@ -15,9 +15,6 @@ const SLIP: f64 = 0.2;
 
 impl Wishes {
     /// The requirements in SI units.
-    ///
-    /// # Errors
-    /// The first that is missing or cannot be, by its name, with what to give.
     pub fn requirements(&self) -> Result<Requirements, Error> {
         checked(self)
     }
@@ -57,7 +54,6 @@ fn checked(wishes: &Wishes) -> Result<Requirements, Error> {
     })
 }
 
-/// The error that something is missing.
 fn missing(option: &str, problem: &str) -> Error {
     Error::Requirement { place: option.to_owned(), problem: format!("missing: {problem}") }
 }
@@ -163,7 +159,6 @@ fn damping(wishes: &Wishes, critical: f64) -> Result<f64, Error> {
     Ok(c1)
 }
 
-/// What moves the structure.
 fn driving(wishes: &Wishes) -> Result<Driving, Error> {
     let all = [
         ("force", &wishes.force, Parameter::P.units()),
@@ -284,7 +279,6 @@ fn goal(wishes: &Wishes) -> Result<Measure, Error> {
     })
 }
 
-/// The limits, and the largest k2.
 fn limits(wishes: &Wishes) -> Result<(Limits, Option<f64>), Error> {
     let (mut limits, mut k2) = (Limits::default(), None);
     for (name, typed) in wishes.all_limits()? {

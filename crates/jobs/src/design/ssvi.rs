@@ -40,7 +40,6 @@ const DESCENTS: usize = 4;
 pub(super) struct Found {
     /// Its ends, `[k2, c2, D, C]` each with its value, the best first; none where nothing that was tried comes near the TMD.
     pub ends: Vec<(f64, Vec<f64>)>,
-    /// Designs that were evaluated.
     pub tried: usize,
 }
 
@@ -114,9 +113,6 @@ fn so_far(study: &Study, value: f64, x: &[f64]) -> String {
 }
 
 /// Searches from what is known; `beside` more starts, as the end of a search under other limits.
-///
-/// # Errors
-/// The study has nothing to tune, or the journal cannot be written.
 pub(super) fn best(
     study: &Study,
     tmd: &Candidate,

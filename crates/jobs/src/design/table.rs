@@ -55,9 +55,6 @@ pub(super) fn table(compared: &Comparison) -> Table {
 }
 
 /// The numbers of a row, computed again.
-///
-/// # Errors
-/// The input of the results cannot be read.
 pub(super) fn again(place: &Path, _name: &str) -> Result<Source, Error> {
     let studies = Resolved::read(place)?.studies()?;
     Ok(Source::new(move |row: Row| {

@@ -21,7 +21,6 @@ pub struct Formula {
     pub name: &'static str,
     /// Its spring (N/m) and dashpot (N·s/m).
     pub k2: f64,
-    /// As `k2`.
     pub c2: f64,
 }
 
@@ -54,9 +53,6 @@ impl Formula {
 }
 
 /// The best `[k2, c2]` of a TMD study under its limits: of designs that break some, the one that breaks them by the least.
-///
-/// # Errors
-/// The study has nothing to tune.
 pub(super) fn best(study: &Study, formulas: &[Formula]) -> Result<[f64; 2], Error> {
     let search = study.search().map_err(Error::rule(study))?;
     let objective = searched(study, &search, &search.variables);

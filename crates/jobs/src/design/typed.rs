@@ -159,9 +159,6 @@ impl Wishes {
     }
 
     /// The limits in the order in which they are given, each with its name: those of the file, then those as typed, which replace them.
-    ///
-    /// # Errors
-    /// One of them has no name or no value.
     pub(super) fn all_limits(&self) -> Result<Vec<(String, Typed)>, Error> {
         let mut all = Vec::new();
         for (name, value) in &self.limits {

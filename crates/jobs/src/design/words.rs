@@ -60,7 +60,6 @@ pub(super) fn frequency(omega: f64, unit: &'static str) -> String {
     format!("{} {unit}", rounded(omega / size, 4))
 }
 
-/// The parameters of a damper to build.
 pub(super) fn parameters(of: &Candidate) -> String {
     let Some(damper) = of.damper() else { return "no damper".to_owned() };
     let gaps = if damper.contact.is_some() { &Parameter::PAPER[..] } else { &Parameter::PAPER[..2] };
@@ -83,7 +82,6 @@ pub(super) fn tuning(of: &Candidate, requirements: &Requirements) -> String {
     format!("{}, damping {} %", frequency(natural, unit), rounded(100.0 * zeta, 3))
 }
 
-/// The natural frequency of the structure, in words.
 pub(super) fn natural(requirements: &Requirements) -> String {
     let omega = requirements.natural_frequency();
     match requirements.frequencies {

@@ -3,10 +3,8 @@
 use std::io::{BufRead, Error, Result};
 use std::sync::mpsc::{Receiver, sync_channel};
 
-/// Most bytes of a line.
 pub const MOST: usize = 4096;
 
-/// A line.
 #[derive(Debug, PartialEq)]
 pub enum Line {
     /// Its text; invalid UTF-8 is replaced.

@@ -222,8 +222,7 @@ fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
 fn certificate(fronts: &Fronts, one: &Certified) -> String {
     let Certified { sweep, bound, design, reference, certificate, .. } = one;
     let reference = reference.map_or("none".to_owned(), |reference| format!("{} J", joule(reference)));
-    let lines: Vec<String> =
-        certificate.short().to_string().lines().map(|line| line.trim().to_owned()).collect();
+    let lines: Vec<String> = certificate.lines();
     format!(
         "{}, {}: {} with {} J (best {} under the same bound: {reference}). {}",
         fronts.name(design.damper),

@@ -152,7 +152,7 @@ impl Fronts {
         let scene = study.scene_at(at).unwrap_or(study.scene);
         let needs = Largest::of(&study, &scene);
         let certificate = judge(&Study { scene, ..study })?;
-        let (verdict, reason) = (certificate.short().verdict(), certificate.reason().to_owned());
+        let (verdict, reason) = (certificate.verdict(), certificate.reason().to_owned());
         Ok(Candidate { verdict, reason, needs, ..design.clone() })
     }
 

@@ -1,6 +1,6 @@
 //! A table or figure of the paper, reproduced: our results, and the paper's statements with a verdict on each.
 
-use retune_report::document::{Picture, Statement, Verdict};
+use retune_report::document::{Figure, Statement, Verdict};
 use retune_report::table::Table;
 use retune_report::{Sheet, drawing};
 use serde::{Deserialize, Serialize};
@@ -11,7 +11,7 @@ pub struct Item {
     /// The settings of our results.
     pub made_by: String,
     /// Figures.
-    pub pictures: Vec<Picture>,
+    pub pictures: Vec<Figure>,
     /// Tables for readers, each with its caption.
     pub tables: Vec<(String, Table)>,
     /// The paper's statements, one by one.
@@ -39,7 +39,7 @@ impl Item {
     /// Adds a figure, whose file is `name.svg`.
     pub fn picture(&mut self, name: &str, sheet: &Sheet, caption: &str) {
         let [file, caption] = [format!("{name}.svg"), caption.to_owned()];
-        self.pictures.push(Picture { file, drawing: drawing(sheet), caption });
+        self.pictures.push(Figure { file, drawing: drawing(sheet), caption });
     }
 
     /// Adds a table for readers.

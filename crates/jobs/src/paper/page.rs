@@ -142,7 +142,7 @@ fn blocks(entry: &Entry, item: &Item) -> Vec<Block> {
     let folded = |subject: String, inner: Vec<Block>| {
         if inner.is_empty() { None } else { Some(Block::Folded(subject, inner)) }
     };
-    let mut pictures = item.pictures.iter().cloned().map(Block::Picture);
+    let mut pictures = item.pictures.iter().cloned().map(Block::Linked);
     let count = item.statements.len();
     let statements = if count == 0 { Vec::new() } else { vec![Block::Statements(item.statements.clone())] };
     let reasons =

@@ -11,9 +11,6 @@ const NAMED: usize = 5;
 
 impl Shared<'_> {
     /// Takes the numbers of all rows from the files `parts`, or from all in the directory of parts if there are none, into the journal.
-    ///
-    /// # Errors
-    /// A part cannot be read, is of another work, or overlaps another; or rows are missing.
     pub fn merge(
         &self,
         parts: &[PathBuf],

@@ -53,7 +53,6 @@ impl std::fmt::Display for Shard {
 }
 
 impl Shard {
-    /// The points of this share of `len` points.
     fn points(self, len: usize) -> Range<usize> {
         let end = |shares: usize| (shares as u128 * len as u128 / self.count as u128) as usize;
         end(self.index - 1)..end(self.index)
@@ -168,14 +167,12 @@ fn open(place: &Path, order: &Order, identity: &Identity, watch: &dyn Observer) 
     job::open(place, order, identity, Extent::Share, |_| false, watch)
 }
 
-/// Removes the working directory of a part.
 fn put_away(work: Directory, place: &Path) {
     work.discard();
     drop(work); // removes the lock
     let _ = std::fs::remove_dir(place); // empty by now; otherwise it is not ours
 }
 
-/// The part of a shard, if it exists.
 fn find(parts: &Path, shard: Shard) -> Result<Option<PathBuf>, Error> {
     let prefix = format!("{}-", shard.name());
     Ok(list(parts)?.into_iter().find(|path| {

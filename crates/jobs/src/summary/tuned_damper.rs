@@ -7,7 +7,6 @@ use serde::Serialize;
 /// A damper as in the paper's Table 2: m2 (kg) and its design.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct TunedDamper {
-    /// m2, mass, kg.
     #[serde(rename = "m2")]
     pub mass: Positive,
     /// k2, c2, D, C, and what else is varied of it.

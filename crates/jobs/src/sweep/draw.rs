@@ -15,7 +15,6 @@ const NONE: Stroke = Stroke::new(BLACK, 1.1, Dash::Short);
 /// Fewer values than this are marked one by one.
 const FEW: usize = 40;
 
-/// The figure of a sweep as SVG.
 pub fn draw(sweep: &Sweep, table: &Table) -> String {
     let names = shown(sweep);
     let charts: Vec<Chart> =
@@ -33,7 +32,6 @@ pub fn draw(sweep: &Sweep, table: &Table) -> String {
     svg(&Sheet { stacked: true, description, legend, caption, ..Sheet::of(title(sweep), charts) })
 }
 
-/// How a value is marked.
 const MARK: Mark = Mark::new(Shape::Disc, VERMILION, 3.0);
 
 fn peak(sweep: &Sweep, table: &Table, name: &str) -> Option<String> {

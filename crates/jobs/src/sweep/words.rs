@@ -7,7 +7,6 @@ use retune_report::table::{Column, Table};
 use retune_study::{counted, frequency, hertz_and_rpm, over, rounded};
 use textwrap::{Options, fill};
 
-/// Widest line.
 const WIDEST: usize = 80;
 /// Width of a column with a frequency or another parameter, and of one with a quantity.
 const NARROW: usize = 9;
@@ -190,7 +189,6 @@ fn cell(value: f64) -> String {
     if value.is_finite() { rounded(value, 4) } else { "-".to_owned() }
 }
 
-/// The rows that are shown.
 fn chosen(count: usize, ends: impl Iterator<Item = usize>, all: bool) -> Vec<usize> {
     if all || count <= FEW {
         return (0..count).collect();

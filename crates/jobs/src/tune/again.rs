@@ -121,7 +121,6 @@ pub(super) fn certificate(place: &Path, name: &str) -> Result<Made, Error> {
     }
 }
 
-/// The study of the results in a directory.
 fn study_of(place: &Path) -> Result<Study, Error> {
     Ok(retune_study::read(&place.join(resolved::ONE))?)
 }

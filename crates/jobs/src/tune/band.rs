@@ -24,9 +24,6 @@ pub(crate) type Rows = Vec<(f64, [f64; 3])>;
 
 /// Writes `band.csv` and `band.svg`, and returns their rows, if the objective has a band; `tuned` is the scene with the damper that was found. Missing values (a steady motion
 /// that reaches a wall, a run that fails) are empty fields and gaps.
-///
-/// # Errors
-/// A file cannot be written.
 pub(super) fn write(study: &Study, tuned: Scene, results: &Directory) -> Result<Option<Rows>, Error> {
     let objective = study.objective();
     let Some((term, band)) = first(&objective).and_then(|term| Some((term, term.omega?.of(&tuned.primary))))
@@ -62,7 +59,6 @@ pub(super) fn write(study: &Study, tuned: Scene, results: &Directory) -> Result<
     Ok(Some(rows))
 }
 
-/// The columns of the three curves.
 pub(crate) fn columns(quantity: Measure) -> [String; 3] {
     ["none", "study", "tuned"].map(|of| format!("{}_{of}", quantity.name()))
 }
@@ -80,7 +76,6 @@ pub(crate) fn energy(study: &Study, scene: Scene, term: &Objective) -> f64 {
     value.map_or(f64::NAN, |found| found.value)
 }
 
-/// The first term of an objective.
 pub(crate) fn first(objective: &Objective) -> Option<&Objective> {
     objective.terms().first().map(|(_, term)| *term)
 }

@@ -15,9 +15,6 @@ const GAIN: f64 = 1e-5;
 
 /// Goes down from the end of every refinement, and from the best TMD of a damper with walls: in a kink, where several peaks are equally high or a
 /// limit is reached, a simplex stops before it arrives. An end that is better takes the place of the refinement's.
-///
-/// # Errors
-/// The journal cannot be written.
 pub(super) fn finish(
     refined: &mut Refined,
     study: &Study,

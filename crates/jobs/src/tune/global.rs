@@ -20,26 +20,18 @@ use retune_study::{counted, joined, short};
 use serde::Serialize;
 use std::time::Instant;
 
-/// The results of a global search.
 pub struct Explored {
     /// The searches, in the order of their starts.
     pub searches: Vec<Descent>,
-    /// The basins they reached.
     pub basins: Vec<Basin>,
-    /// The box.
     pub space: Space,
     /// The distance below which two ends are one basin.
     pub apart: f64,
-    /// The designs that could not be computed.
     pub failures: Failures,
-    /// The numbers of designs evaluated.
     pub counts: Counts,
 }
 
 /// Makes the global search of a study, if it asks for one. The journal keeps its values under names that begin with `place`.
-///
-/// # Errors
-/// No design could be computed.
 pub(super) fn global(
     study: &Study,
     search: &Search,
@@ -103,7 +95,6 @@ impl Explored {
 pub struct Basins {
     /// Designs evaluated as samples and by the searches.
     pub(crate) evaluations: u64,
-    /// Number of searches.
     pub(crate) searches: usize,
     /// Number of them that ended in the basin of the optimum.
     pub(crate) reached_optimum: usize,
@@ -119,9 +110,7 @@ pub(crate) struct BasinNote {
     /// null if it breaks a limit.
     #[serde(flatten)]
     pub(crate) found: Amount,
-    /// Searches that ended here.
     pub(crate) searches: usize,
-    /// Refinements that ended here.
     pub(crate) refinements: usize,
 }
 
@@ -174,7 +163,6 @@ impl Basins {
         self.basins.iter().map(|basin| basin.design)
     }
 
-    /// Writes `basins.csv`.
     pub(super) fn write(&self, objective: &DesignObjective, results: &Directory) -> Result<(), Error> {
         let quantity = self.basins.first().map_or_else(Measure::default, |basin| basin.found.quantity);
         let mut table = Table::new(["basin", "searches", "refinements"].map(|name| Column::new(name, "")));
@@ -192,7 +180,6 @@ impl Basins {
         Ok(results.write(BASINS, &table.csv())?)
     }
 
-    /// A line on screen.
     pub(super) fn report(&self) -> String {
         let Self { searches, reached_optimum, basins, .. } = self;
         let next = basins.get(1).map(|basin| basin.found).filter(|found| !found.value.is_nan());

@@ -11,7 +11,7 @@ use super::surf::Surf;
 use super::valley::Valley;
 use crate::Error;
 use crate::amount::Amount;
-use crate::certify::Short;
+use crate::certify::Certificate;
 use crate::needs::Needs;
 use crate::summary::{MadeBy, Summary, TunedDamper, baseline};
 use notes::{Goal, LimitNote, Met};
@@ -19,7 +19,7 @@ use retune_model::{Parameter, PerVariable, Scene};
 use retune_optim::{Evaluation, Failures, Scaling, Stop, value_of};
 use retune_study::{Search, Study, design_cells, short};
 use run::RunNote;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// The best design and how it was found. SI units.
 #[derive(Clone, Debug, Serialize)]
@@ -62,8 +62,9 @@ pub struct Optimum {
     /// How far each parameter may go, the others held, until the value is 0.1 % larger.
     #[serde(rename = "within_0.1_percent")]
     valleys: Vec<Valley>,
-    /// The short form of `certificate.json`.
-    certificate: Short,
+    /// `certificate.json`, here in its short form.
+    #[serde(serialize_with = "in_short")]
+    pub(crate) certificate: Certificate,
     /// The largest values over all that the answer covers, each at its own place.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) needs: Option<Needs>,
@@ -95,7 +96,6 @@ pub struct Found {
     pub e1_max: f64,
 }
 
-/// The best point of the grid.
 #[derive(Clone, Debug, Serialize)]
 struct GridBest {
     points: usize,
@@ -104,7 +104,6 @@ struct GridBest {
     value: Amount,
 }
 
-/// The refinements.
 #[derive(Clone, Debug, Serialize)]
 struct Refinement {
     /// "absolute" or "scaled": what TolX measures.
@@ -139,7 +138,7 @@ impl Optimum {
         refined: &Refined,
         summary: Summary,
         evaluation: Evaluation,
-        certificate: Short,
+        certificate: Certificate,
     ) -> Result<Self, Error> {
         let (best, quantity) = (refined.best(), study.quantity());
         let damper = refined.objective.damper(&best.minimum.x)?;
@@ -205,8 +204,12 @@ impl Optimum {
     /// # Errors
     /// [`Error::Infeasible`].
     pub fn check_limits(&self) -> Result<(), Error> {
-        self.certificate.check_limits(self.made_by.study())
+        self.certificate.check_limits()
     }
+}
+
+fn in_short<S: Serializer>(certificate: &Certificate, serializer: S) -> Result<S::Ok, S::Error> {
+    certificate.short().serialize(serializer)
 }
 
 /// The header of the paper's Table 2.

@@ -12,7 +12,6 @@ use retune_report::{Axis, Chart, Layer, Nodes, Place, Scale, Sheet, Stroke, Widt
 use retune_store::Directory;
 use retune_study::{Search, Study};
 
-/// Draws all figures.
 pub(super) fn draw(
     study: &Study,
     search: &Search,

@@ -18,25 +18,20 @@ const ROUNDS: usize = 4;
 /// Values that differ by less than this share are the same.
 const SAME: f64 = 1e-6;
 
-/// All refinements of a study.
 pub struct Refined {
     /// The objective that was minimised; it keeps the failed evaluations.
     pub objective: DesignObjective,
     /// A run for each start, in the order of the starts.
     pub runs: Vec<Run>,
-    /// The number of the best run.
     pub winner: usize,
     /// Number of runs that begin at the starts; one more may begin at the best TMD.
     pub starts: usize,
 }
 
-/// One refinement.
 pub struct Run {
-    /// Its log.
     pub rows: Vec<Row>,
     /// Its result, at the end of its descent where that is better.
     pub minimum: Minimum,
-    /// The descent that led there.
     pub descent: Option<Descended>,
 }
 
@@ -45,7 +40,6 @@ pub struct Run {
 pub struct Descended {
     /// The value at its start.
     pub from: f64,
-    /// Evaluations that it made.
     pub evaluations: u64,
 }
 
@@ -57,9 +51,6 @@ impl Refined {
 }
 
 /// Refines every start; writes `fminsearch-starts.csv` of all where there are several.
-///
-/// # Errors
-/// A run cannot be started, or a file cannot be written.
 pub(super) fn refine(
     study: &Study,
     search: &Search,
@@ -90,9 +81,6 @@ pub(super) fn refine(
 
 /// Refines every start. `tell` receives the number of the start, from 1, each row and its whole design; its error ends the run. The journal
 /// keeps values under the name of a stage.
-///
-/// # Errors
-/// A run cannot be started, that of `tell`, or the journal cannot be written.
 pub(super) fn each(
     study: &Study,
     search: &Search,
@@ -160,7 +148,6 @@ fn run(
     Ok(whole)
 }
 
-/// One simplex.
 fn simplex(
     objective: &DesignObjective,
     search: &Search,
@@ -185,9 +172,6 @@ fn simplex(
 }
 
 /// Writes `fminsearch.csv` and `fminsearch.txt` of the run that was chosen.
-///
-/// # Errors
-/// A file cannot be written.
 pub(super) fn write_winner(study: &Study, refined: &Refined, results: &Directory) -> Result<(), Error> {
     let varied = refined.objective.variables();
     let mut csv = results.file(LOG)?;

@@ -23,13 +23,9 @@ use crate::resolved::study_text;
 use retune_report::document::Document;
 use retune_store::Directory;
 
-/// The file.
 pub const FILE: &str = "report.html";
 
 /// Writes the page, after all other files of the results but those that say what made them.
-///
-/// # Errors
-/// The worst run cannot be followed, or the page cannot be written.
 pub(crate) fn write(findings: &Findings, results: &Directory) -> Result<(), Error> {
     let flags = flags::flags(findings);
     let compared = findings.compared();

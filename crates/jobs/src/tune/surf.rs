@@ -22,12 +22,10 @@ const _: () = assert!(retune_study::MOST_GRID_POINTS <= retune_store::MOST_POINT
 pub struct Surf {
     /// The grid's parameters, in the order of its axes.
     pub variables: Vec<Parameter>,
-    /// The grid.
     pub grid: Grid,
     /// Its value at each point in the unit of the quantity, as exact as the study wants its grid; [`Coarse::up_to`] where it is above that,
     /// +∞ where it could not be computed.
     pub values: Vec<f64>,
-    /// The number of the best point.
     pub best: usize,
     /// Its value in the unit of the quantity, at the tolerance of refinements and with the peaks between samples.
     pub least: f64,
@@ -35,7 +33,6 @@ pub struct Surf {
     chosen: Vec<usize>,
     /// The points that could not be computed.
     pub failures: Failures,
-    /// The numbers of designs evaluated.
     pub counts: Counts,
 }
 
@@ -74,9 +71,6 @@ impl Rows for Designs {
 }
 
 /// Computes the grid of a study, if it has one, and writes `surf.csv`.
-///
-/// # Errors
-/// No point could be computed, or the file cannot be written.
 pub(super) fn surf(
     study: &Study,
     search: &Search,
@@ -126,7 +120,6 @@ pub(super) fn surf(
     Ok(Some(surf))
 }
 
-/// The coordinates of point number `i`.
 fn point(grid: &Grid, i: usize) -> Vec<f64> {
     let mut point = vec![0.0; grid.dim()];
     grid.point(i, &mut point);
@@ -156,7 +149,6 @@ fn write(
 }
 
 impl Surf {
-    /// The coordinates of point number `i`.
     pub fn point(&self, i: usize) -> Vec<f64> {
         point(&self.grid, i)
     }

@@ -10,9 +10,6 @@ use retune_study::counted;
 use std::path::Path;
 
 /// Compares every file with the manifest; returns their names, sorted.
-///
-/// # Errors
-/// The directory cannot be read.
 pub fn verify(place: &Path, report: &mut Report<'_>) -> Result<Vec<String>, Error> {
     let (there, links) = names(place)?;
     compare(place, &there, report)?;

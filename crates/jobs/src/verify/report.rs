@@ -19,13 +19,11 @@ struct Finding {
 
 /// A report to the observer; it collects what does not hold and what cannot be checked.
 pub struct Report<'a> {
-    /// The observer.
     pub watch: &'a dyn Observer,
     /// The largest relative difference that counts as held.
     within: f64,
     /// The prefix of a file's name in a message: its directory, where there are several.
     pub place: String,
-    /// What does not hold.
     pub problems: Vec<String>,
     unchecked: Vec<String>,
     findings: Vec<Finding>,
@@ -45,9 +43,6 @@ impl<'a> Report<'a> {
     }
 
     /// Reports what does not hold; `name` is the file, or empty.
-    ///
-    /// # Errors
-    /// The observer's, as of all reports.
     pub fn fail(&mut self, name: &str, words: &str) -> Result<(), Error> {
         let between = if name.is_empty() { "" } else { ", " };
         self.problems.push(format!("{}{name}{between}{words}", self.place));
@@ -56,10 +51,6 @@ impl<'a> Report<'a> {
         self.watch.result(&line)
     }
 
-    /// Reports what cannot be checked.
-    ///
-    /// # Errors
-    /// As [`Self::fail`].
     pub fn unchecked(&mut self, words: &str) -> Result<(), Error> {
         self.unchecked.push(format!("{}{words}", self.place));
         self.found("", None, words);
@@ -67,18 +58,12 @@ impl<'a> Report<'a> {
     }
 
     /// Compares a JSON file, or a part of it, with the same made again.
-    ///
-    /// # Errors
-    /// As [`Self::fail`].
     pub fn compare(&mut self, name: &str, what: &str, said: &Value, again: &Value) -> Result<(), Error> {
         let tally = values::compare(said, again, self.within);
         self.tell(name, &format!("{what} made again"), &tally)
     }
 
     /// Reports how many numbers of the file `name` differ; `what` says which were compared.
-    ///
-    /// # Errors
-    /// As [`Self::fail`].
     pub fn tell(&mut self, name: &str, what: &str, tally: &Tally) -> Result<(), Error> {
         let most = if tally.most.is_finite() {
             format!(
@@ -102,9 +87,6 @@ impl<'a> Report<'a> {
     }
 
     /// The result of all that was reported.
-    ///
-    /// # Errors
-    /// [`Error::NotHeld`], [`Error::NotChecked`], or the observer's.
     pub fn end(self, path: &Path) -> Result<(), Error> {
         let Self { watch, within, problems, unchecked, findings, .. } = self;
         let unchecked = unchecked.join("; ");

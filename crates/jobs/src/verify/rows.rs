@@ -9,9 +9,6 @@ use retune_study::counted;
 use std::path::Path;
 
 /// Computes at most `most` rows again, evenly spread, and compares every number of them with the file.
-///
-/// # Errors
-/// The file cannot be read, or the report not be shown.
 pub fn check(
     path: &Path,
     name: &str,

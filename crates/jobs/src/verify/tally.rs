@@ -3,9 +3,7 @@
 /// The differences between the numbers of a file and those computed again.
 #[derive(Default)]
 pub struct Tally {
-    /// Number of values that differ.
     pub differ: usize,
-    /// The largest relative difference.
     pub most: f64,
 }
 
@@ -19,7 +17,6 @@ impl Tally {
         }
     }
 
-    /// Counts one more difference.
     pub fn differs(&mut self, by: f64) {
         self.differ += 1;
         self.most = self.most.max(by);

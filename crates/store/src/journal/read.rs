@@ -125,7 +125,6 @@ pub fn first_line(identity: &Identity) -> String {
     Seal::plain().close(&format!("{TITLE} {}", identity.words()))
 }
 
-/// Reads [`first_line`].
 fn head(line: &[u8]) -> Option<Identity> {
     Identity::parse(Seal::plain().open(line)?.strip_prefix(TITLE)?.strip_prefix(' ')?)
 }

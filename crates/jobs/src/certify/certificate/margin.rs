@@ -47,7 +47,6 @@ pub struct Error {
 }
 
 impl Other {
-    /// What it is and where.
     pub fn words(&self) -> String {
         let Self { value, omega, k1, periods, impacts, .. } = self;
         let kind = periods.map_or_else(|| "irregular".to_owned(), |n| periodic(n, impacts));
@@ -62,7 +61,6 @@ impl Margin {
         self.safe_to < self.needed_force || !self.parameters.is_empty()
     }
 
-    /// In words.
     pub fn words(&self) -> String {
         let safe = percent_down(self.safe_to);
         let Some(other) = &self.other else {

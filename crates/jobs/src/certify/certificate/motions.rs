@@ -38,7 +38,6 @@ pub struct Motions {
     pub irregular: Vec<Irregular>,
 }
 
-/// The motion with the largest value.
 #[derive(Clone, Debug, Serialize)]
 pub struct Another {
     #[serde(flatten)]
@@ -87,7 +86,6 @@ impl Another {
         }
     }
 
-    /// What it is and where.
     pub fn words(&self) -> String {
         let Self { value, omega, periods, impacts, .. } = self;
         let kind = periods.map_or_else(|| "irregular".to_owned(), |n| periodic(n, impacts));
@@ -101,7 +99,6 @@ impl Another {
         format!("`retune simulate STUDY --set omega={omega} --set k1={k1} --from {state}` runs it again")
     }
 
-    /// How it is reached.
     pub fn reached(&self) -> String {
         if self.from_rest {
             "runs from rest lead there".to_owned()
@@ -150,7 +147,6 @@ impl Motions {
         }
     }
 
-    /// What the starts may miss.
     pub fn missed(&self) -> String {
         if self.from == self.to {
             return format!("{} starts at one frequency", self.starts);

@@ -4,6 +4,7 @@ use super::notes::{self, Goal, LimitNote};
 use super::run::{DescentNote, RunNote};
 use super::{FailureNote, Optimum, Valley, stop_words};
 use crate::amount::Amount;
+use crate::certify::Verdict;
 use crate::needs::Needs;
 use crate::summary::how_many;
 use retune_model::Parameter;
@@ -18,12 +19,11 @@ const HELD: &str = "\u{a0}";
 const HYPHEN: &str = "\u{2011}";
 
 impl Optimum {
-    /// The last lines on screen.
     pub fn report(&self) -> String {
         let mut lines = vec![String::new()];
         let mut say = |words: String| lines.push(wrapped(&words, "  "));
         say(self.headline());
-        let missed = self.certificate.missed_peak.as_ref().map(|words| format!("{words}; take more samples"));
+        let missed = self.certificate.missed_peak().map(|words| format!("{words}; take more samples"));
         let warnings = missed.into_iter().chain(self.needs.iter().flat_map(Needs::warnings));
         warnings.for_each(|words| say(format!("  note: {words}")));
         say(format!("  {}", self.compared()));
@@ -36,7 +36,7 @@ impl Optimum {
         for (name, words) in self.needs.iter().flat_map(|needs| needs.lines(&self.of)) {
             say(format!("  {name:<9}{words}"));
         }
-        say(format!("  motion   {}", self.certificate.motion_words()));
+        say(format!("  motion   {}", self.certificate.measured.motion.sentence));
         say(format!("  verdict  {}", self.certificate.verdict_words()));
         if let Some(limits) = &self.limits {
             say(format!("  {}", limits.report()));
@@ -46,7 +46,6 @@ impl Optimum {
         lines.join("\n")
     }
 
-    /// How the search went, for the log.
     pub fn search(&self) -> String {
         let winner = self.refine.winner;
         let RunNote { iterations, func_count, stop, descent, .. } = &self.refine.runs[winner - 1];
@@ -72,7 +71,7 @@ impl Optimum {
     /// What to do next with the results in `out`.
     pub fn next(&self, out: &Path) -> String {
         let single = self.objective.as_ref().is_none_or(|goal| goal.band().is_none());
-        if self.certificate.is_chaotic() && single {
+        if self.certificate.judged.verdict == Some(Verdict::SingleChaoticRealisation) && single {
             return "next: give the study a band (`optimize.objective.omega`, docs/tuning.md): at this\n  \
                     frequency alone the value is one of many that practically equal designs have"
                 .to_owned();

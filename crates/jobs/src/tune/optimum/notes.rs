@@ -28,7 +28,6 @@ pub(crate) struct Goal {
     pub(crate) runs: Option<u64>,
 }
 
-/// The limits and the best design.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct LimitNote {
     pub(crate) allowed: Limits,
@@ -48,12 +47,10 @@ pub(crate) struct LimitNote {
     pub(crate) infeasible: u64,
 }
 
-/// As the fields of an object.
 fn by_name<S: Serializer>(reached: &[(Limit, f64)], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(reached.iter().map(|(limit, value)| (limit, value)))
 }
 
-/// A parameter that ended on a bound.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(transparent)]
 pub(crate) struct Met {

@@ -24,7 +24,6 @@ pub fn title(findings: &Findings) -> String {
     format!("tuned {kind}, {name} {value}")
 }
 
-/// The section.
 pub fn section(findings: &Findings, compared: &Compared, flags: &[Flag]) -> Section {
     let body = html! {
         (lead(findings))
@@ -105,12 +104,12 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
     };
     let none = against(&beside.none);
     let study = against(&beside.study);
-    let certificate = findings.certificate;
-    let verdict = certificate.verdict.map_or("no verdict", |_| findings.optimum.verdict());
+    let certificate = &findings.optimum.certificate;
+    let verdict = certificate.judged.verdict.map_or("no verdict", |_| findings.optimum.verdict());
     let words = certificate
-        .words
+        .reason()
         .strip_prefix(verdict)
-        .map_or(certificate.words.as_str(), |rest| rest.trim_start_matches([':', ',', ' ']));
+        .map_or(certificate.reason(), |rest| rest.trim_start_matches([':', ',', ' ']));
     let fact = |name: &str, value: &str, more: &str| {
         html! { div { dt { (name) } dd { strong { (value) } @if !more.is_empty() { span.more { (more) } } } } }
     };
@@ -120,7 +119,7 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
         dl.facts {
             (fact("Against no damper", &none.0, &none.1))
             (fact(&format!("Against {}", baseline(&findings.study.scene)), &study.0, &study.1))
-            (fact("Certificate", verdict, &format!("{words}; methods differ by {} {}", digits(certificate.error_bar, 2), quantity.unit())))
+            (fact("Certificate", verdict, &format!("{words}; methods differ by {} {}", digits(certificate.judged.error_bar, 2), quantity.unit())))
             @if let Some(records) = &certificate.records { (fact("Other records", records.words(), "Values, not bounds")) }
             @if let Some(walls) = &certificate.walls { (fact("Contacts", &contacts(walls, energy, quantity), walls.words())) }
             @if let Some(needs) = &findings.optimum.needs {
@@ -133,7 +132,7 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
                 (say("Acceleration", Measure::Acceleration, "largest |a1| of the structure"))
                 (say("Force on the ground", Measure::GroundForce, "largest |k1 x1 + c1 v1|"))
             }
-            (fact("Motion", &certificate.motion.regime, &format!("at the worst frequency it {}", certificate.motion.sentence)))
+            (fact("Motion", &findings.measured().motion.regime, &format!("at the worst frequency it {}", findings.measured().motion.sentence)))
         }
     }
 }

@@ -13,7 +13,6 @@ use retune_report::html::{Table, figure, link};
 use retune_store::Directory;
 use retune_study::counted;
 
-/// The section.
 pub fn section(findings: &Findings, results: &Directory) -> Section {
     let failures = &findings.optimum.failures;
     let winner = &findings.refined.best().minimum;

@@ -26,7 +26,6 @@ pub struct Curves {
 }
 
 impl Curves {
-    /// Computes them.
     pub fn new(findings: &Findings) -> Self {
         let own = findings.band.as_ref().filter(|rows| !rows.is_empty());
         let (omega, value) = match own {

@@ -7,11 +7,9 @@ use crate::tune::optimum::stop_words;
 use retune_optim::{Limit, Stop};
 use retune_study::{counted, joined};
 
-/// A flag.
 pub struct Flag {
     /// Its name: the page marks it so, and tests look for it.
     pub name: &'static str,
-    /// What is so.
     pub words: String,
     /// What to do about it in the study, before another search.
     pub change: Option<String>,
@@ -22,7 +20,7 @@ pub fn flags(findings: &Findings) -> Vec<Flag> {
     let flag = |name, words| Flag { name, words, change: None };
     let all = [
         broken(findings),
-        findings.certificate.missed_peak().map(|words| Flag {
+        findings.optimum.certificate.missed_peak().map(|words| Flag {
             name: "missed-peak",
             words: format!("{words}."),
             change: Some("more samples in optimize.objective.omega".to_owned()),
@@ -31,14 +29,14 @@ pub fn flags(findings: &Findings) -> Vec<Flag> {
         on_bound(findings),
         edge(findings),
         stopped(findings),
-        findings.certificate.motion.irregular.then(|| irregular(findings)),
-        (!findings.certificate.predictable).then(|| {
+        findings.measured().motion.irregular.then(|| irregular(findings)),
+        (!findings.optimum.certificate.judged.predictable).then(|| {
             flag(
                 "not-predictable",
                 format!(
                     "{} of the worst run is not predictable: equally good ways to compute it differ by up to {}.",
                     findings.quantity().name(),
-                    amount(findings.certificate.error_bar, findings.quantity())
+                    amount(findings.optimum.certificate.judged.error_bar, findings.quantity())
                 ),
             )
         }),
@@ -82,7 +80,7 @@ fn broken(findings: &Findings) -> Option<Flag> {
 }
 
 fn near_a_limit(findings: &Findings) -> Option<Flag> {
-    let near = findings.certificate.limits.as_ref()?.broken_near()?;
+    let near = findings.measured().limits.as_ref()?.broken_near()?;
     let kept = findings.optimum.limits.as_ref().is_some_and(|note| note.feasible);
     kept.then(|| Flag {
         name: "near-a-limit",
@@ -145,7 +143,7 @@ fn stopped(findings: &Findings) -> Option<Flag> {
 }
 
 fn irregular(findings: &Findings) -> Flag {
-    let motion = &findings.certificate.motion;
+    let motion = &findings.measured().motion;
     Flag {
         name: "irregular",
         words: format!(

@@ -18,10 +18,6 @@ const POINTS: f64 = 150.0;
 /// A wall is drawn unless it lies farther from the damper than this many times the width of its motion.
 const NEAR: f64 = 2.0;
 
-/// The section.
-///
-/// # Errors
-/// The run cannot be followed.
 pub fn section(findings: &Findings) -> Result<Section, Error> {
     let window = stretch(findings);
     let interval = (window.to - window.from) / (PERIODS * POINTS);
@@ -42,7 +38,6 @@ pub fn section(findings: &Findings) -> Result<Section, Error> {
     Ok(("motion", title, vec![Block::Elements(body)]))
 }
 
-/// The last periods of the window.
 fn stretch(findings: &Findings) -> Window {
     let Window { from, to } = findings.study.window.window();
     let omega = findings.worst_omega();
@@ -51,7 +46,7 @@ fn stretch(findings: &Findings) -> Window {
 }
 
 fn words(findings: &Findings) -> Table {
-    let (motion, response) = (&findings.certificate.motion, findings.response);
+    let (motion, response) = (&findings.measured().motion, findings.response);
     let [structure, obstacle] = motion.contacts_per_period;
     let exponent = format!("{} ± {}", four(motion.exponent), digits(motion.exponent_error, 2));
     let mut table = Table::wrapping("The motion in numbers", &["quantity", "value", "meaning"]);
@@ -96,7 +91,7 @@ fn methods(findings: &Findings) -> Table {
         format!("{} of the worst run by other methods and tolerances", quantity.name()),
         &["method", "relative tolerance", &label(quantity)],
     );
-    for run in &findings.certificate.convergence {
+    for run in &findings.measured().convergence {
         table.row([run.method.name().to_owned(), format!("{:e}", run.rtol), digits(run.value.value, 10)]);
     }
     table

@@ -24,7 +24,7 @@ pub fn section(findings: &Findings, files: &[String], study: &str) -> Section {
     row("objective", format!("{}, {}", findings.quantity().name(), objective(findings)));
     row("window", format!("{} s to {} s", window.t0.get(), window.end.get()));
     row("method", format!("{}, relative tolerance {:e}", solver.method.name(), solver.rtol));
-    row("rule of the certificate", findings.certificate.rule.clone());
+    row("rule of the certificate", findings.optimum.certificate.rule.clone());
     let mut names: Vec<&str> = files.iter().map(String::as_str).collect();
     names.extend([resolved::ONE, manifest::NAME]);
     names.sort_unstable();

@@ -11,7 +11,6 @@ use retune_store::Directory;
 /// Bytes of maps that a page holds; of more it holds links alone.
 const MOST: usize = 220_000;
 
-/// The section.
 pub fn section(findings: &Findings, files: &[String], results: &Directory) -> Section {
     let maps: Vec<(&String, String)> = files
         .iter()

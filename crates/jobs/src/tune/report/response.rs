@@ -62,7 +62,6 @@ impl<'a> Curve<'a> {
     }
 }
 
-/// The section.
 pub fn section(findings: &Findings, compared: &Compared) -> Section {
     let curves = Curves::new(findings);
     let names = lines(findings).map(|(name, _)| name);

@@ -17,9 +17,8 @@ use retune_report::{
 const ROW: f64 = 17.0;
 const HALF: f64 = 0.32;
 
-/// The section.
 pub fn section(findings: &Findings) -> Section {
-    let near = &findings.certificate.neighbourhood;
+    let near = &findings.measured().neighbourhood;
     let quantity = findings.quantity();
     let name = quantity.name();
     let said = |value: f64| said(value, quantity);
@@ -27,13 +26,13 @@ pub fn section(findings: &Findings) -> Section {
         p {
             "Of " (near.members) " designs whose k1, k2, c2, D and C are off by at most " (digits(100.0 * near.errors, 3))
             " %, nine in ten have an " (name) " from " (said(near.low)) " to " (said(near.high)) ", and half have less than "
-            (said(near.median)) ". The design itself has " (said(findings.certificate.value.value)) "."
+            (said(near.median)) ". The design itself has " (said(findings.optimum.certificate.value.value)) "."
         }
         (figure(&picture(findings), html! {
             "The largest " (name) " with one parameter off by at most 1 %, and the neighbours' spread. " (link(crate::certify::FILE))
         }))
         (table(findings).markup())
-        @if let Some(walls) = &findings.certificate.walls { (walls_table(findings, walls).markup()) }
+        @if let Some(walls) = &findings.optimum.certificate.walls { (walls_table(findings, walls).markup()) }
     };
     ("sensitivity", "Sensitivity to small errors", vec![Block::Elements(body)])
 }
@@ -44,7 +43,7 @@ fn said(value: f64, quantity: Measure) -> String {
 }
 
 fn table(findings: &Findings) -> Table {
-    let certificate = findings.certificate;
+    let certificate = &findings.optimum.certificate;
     let (name, unit) = (findings.quantity().name(), findings.quantity().unit());
     let head = [
         "parameter",
@@ -55,7 +54,7 @@ fn table(findings: &Findings) -> Table {
         "against the design, %",
     ];
     let mut table = Table::new(format!("{name} with one parameter off"), &head);
-    for one in &certificate.sensitivity {
+    for one in &certificate.measured.sensitivity {
         let sign = |value: f64, text: String| if value > 0.0 { format!("+{text}") } else { text };
         let percent = 100.0 * (one.worst / certificate.value.value - 1.0);
         table.row([
@@ -70,9 +69,8 @@ fn table(findings: &Findings) -> Table {
     table
 }
 
-/// The value between other walls.
 fn walls_table(findings: &Findings, walls: &Walls) -> Table {
-    let own = findings.certificate.value.value;
+    let own = findings.optimum.certificate.value.value;
     let quantity = findings.quantity();
     let head = ["walls", &label(quantity), "worst at ω, rad/s", "against the design, %"];
     let title =
@@ -88,10 +86,10 @@ fn walls_table(findings: &Findings, walls: &Walls) -> Table {
 }
 
 fn picture(findings: &Findings) -> Drawing {
-    let (certificate, quantity) = (findings.certificate, findings.quantity());
+    let (certificate, quantity) = (&findings.optimum.certificate, findings.quantity());
     let name = quantity.name();
-    let (own, near) = (certificate.value.value, &certificate.neighbourhood);
-    let bars = &certificate.sensitivity;
+    let (own, near) = (certificate.value.value, &certificate.measured.neighbourhood);
+    let bars = &certificate.measured.sensitivity;
     let place = |i: usize| -(i as f64);
     let bar = |i: usize, ends: (f64, f64), colour| Layer::Band {
         x: ends,
