@@ -8,7 +8,6 @@ mod curves;
 mod drawing;
 mod modes;
 mod page;
-mod question;
 mod reading;
 mod requirements;
 mod ssvi;
@@ -92,7 +91,7 @@ pub fn design(
             directory.write_json(&format!("studies-{}.json", study.name()), &study.resolved())?;
         }
         let answer = answer::answer(requirements, &compared, &job.out);
-        let question = question::question(requirements).join("\n");
+        let question = words::question(requirements).join("\n");
         directory.write("answer.txt", &format!("{question}\n\n{answer}\n"))?;
         pages::write(&page::page(requirements, &compared), directory)?;
         Ok(Made { answer: compared, report: format!("\n{answer}"), parts: Vec::new() })

@@ -6,7 +6,8 @@ use crate::needs::{Largest, TOLD};
 use crate::resolved::Resolved;
 use crate::summary::TunedDamper;
 use crate::tune::{Optimum, table2_header, table2_row};
-use crate::{Error, resampled};
+use crate::Error;
+use crate::tune::objective;
 use retune_model::{Measure, Parameter};
 use retune_report::cells;
 use retune_report::table::Table;
@@ -168,7 +169,7 @@ pub(crate) fn again(place: &Path, _name: &str) -> Result<Source, Error> {
         let (_, study) = studies.iter().find(|(name, _)| name == row.text("damper"))?;
         let at = row.design().filter(|_| !row.number("E1max").is_nan())?;
         let found = match samples {
-            Some(samples) => resampled::value(study, samples, &at),
+            Some(samples) => objective::value(study, samples, &at),
             None => study.scene_at(&at).and_then(|scene| study.energy(&scene)),
         };
         Some(vec![("E1max".to_owned(), found.unwrap_or(f64::INFINITY))])

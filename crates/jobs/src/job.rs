@@ -30,6 +30,7 @@ pub struct Made<T> {
     pub parts: Vec<Directory>,
 }
 
+/// The end of a job.
 #[derive(Debug)]
 pub enum Done<T> {
     /// It was done: its result.

@@ -64,7 +64,6 @@ pub mod paper;
 pub mod parts;
 pub mod prove;
 mod request;
-mod resampled;
 pub mod resolved;
 pub mod retention;
 pub mod rows;

@@ -26,6 +26,7 @@ pub trait Observer: Sync {
     }
 }
 
+/// The progress of a stage.
 pub trait Progress: Sync {
     /// One evaluation is known from an earlier run and takes no time; [`Self::inc`] counts it as well.
     fn known(&self);
@@ -33,9 +34,11 @@ pub trait Progress: Sync {
     fn inc(&self, more: u64);
     /// The best so far, in words.
     fn best(&self, _words: &str) {}
+    /// The stage is finished.
     fn finish(&self);
 }
 
+/// Ignores everything.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Silent;
 

@@ -5,8 +5,10 @@ use retune_store::{Begin, Order};
 use retune_study::{Study, found_in, name_from};
 use std::path::{Path, PathBuf};
 
+/// The options of a job.
 #[derive(Clone, Debug, Default)]
 pub struct Request {
+    /// The study file.
     pub study: PathBuf,
     /// Directory of the results; by default that of the job.
     pub out: Option<PathBuf>,
@@ -48,6 +50,7 @@ impl Request {
         Ok(Self { out: Some(self.out.clone().unwrap_or_else(out)), ..self.clone() })
     }
 
+    /// Runs `work` on the threads of the request.
     pub fn on_threads<T: Send>(&self, work: impl FnOnce() -> Result<T, Error> + Send) -> Result<T, Error> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads.unwrap_or(0).into()).build()?;
         pool.install(work)

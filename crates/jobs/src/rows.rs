@@ -8,8 +8,10 @@ use std::ops::Range;
 
 /// Such rows. Each depends on its number alone, so that they can be computed in any order.
 pub trait Rows: Sync {
+    /// How many there are.
     fn len(&self) -> usize;
 
+    /// Whether there are none.
     fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -1,16 +1,10 @@
 //! The results of a run: one type, from which JSON and text are made.
 
-mod baseline;
-mod tuned_damper;
-
-pub use baseline::{baseline, how_many};
-pub use tuned_damper::TunedDamper;
-
 use crate::describe::forced;
-use retune_model::{Measure, Scene, Source, energy_ratios};
+use retune_model::{Damper, Design, Measure, Parameter, Positive, Scene, Source, energy_ratios};
 use retune_optim::Objective;
 use retune_solver::{Response, SceneKind, StructureMaxima};
-use retune_study::{Solver, Span, Study, counted, hertz_and_rpm, over, rounded};
+use retune_study::{Solver, Span, Study, counted, hertz_and_rpm, is_of_paper, over, rounded};
 use serde::Serialize;
 
 /// The observations in the window of a run. SI units; a ratio 0/0 is null.
@@ -301,5 +295,65 @@ impl std::fmt::Display for Summary {
             self.rejected,
             counted(self.evaluations, "evaluation")
         )
+    }
+}
+
+/// The damper of a study's scene: the paper's where it has the numbers of an optimum that the paper publishes.
+pub fn baseline(scene: &Scene) -> &'static str {
+    if scene.damper.as_ref().is_some_and(is_of_paper) {
+        "the paper's damper"
+    } else {
+        "the damper of the study"
+    }
+}
+
+/// A ratio above 1 in three digits, or in words where nobody would read its digits.
+pub fn how_many(times: f64) -> String {
+    if times >= 1e6 { "over a million".to_owned() } else { rounded(times, 3) }
+}
+
+/// A damper as in the paper's Table 2: m2 (kg) and its design.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct TunedDamper {
+    /// m2, mass, kg.
+    #[serde(rename = "m2")]
+    pub mass: Positive,
+    /// k2, c2, D, C, and what else is varied of it.
+    #[serde(flatten)]
+    pub design: Design,
+}
+
+impl TunedDamper {
+    /// From a damper of a scene, with what is varied of it.
+    pub fn of(damper: &Damper, varied: &[Parameter]) -> Self {
+        let others: Vec<Parameter> =
+            varied.iter().copied().filter(|parameter| *parameter != Parameter::M2).collect();
+        Self { mass: damper.mass, design: Design::of_varied(damper, &others) }
+    }
+
+    /// The design, with the mass where that is varied.
+    pub fn design_of(&self, varied: &[Parameter]) -> Design {
+        let mass = |parameter| parameter == Parameter::M2 && varied.contains(&parameter);
+        let value = |parameter| if mass(parameter) { self.mass.get() } else { self.design.get(parameter) };
+        Design::new(value).unwrap_or(self.design)
+    }
+
+    /// The numbers in words, each to its digits: `m2 = 60 kg, k2 = 215 N/m, …`.
+    pub fn words(&self, digits: impl Fn(Parameter) -> usize) -> String {
+        let mass = [(Parameter::M2, self.mass.get())];
+        let design = Parameter::VARIED.map(|parameter| (parameter, self.design.get(parameter)));
+        let known = mass.into_iter().chain(design).filter(|(_, value)| !value.is_nan());
+        let said: Vec<String> = known
+            .map(|(parameter, value)| {
+                format!("{parameter} = {} {}", rounded(value, digits(parameter)), parameter.unit())
+            })
+            .collect();
+        said.join(", ") + if self.design.get(Parameter::D).is_nan() { ", no walls" } else { "" }
+    }
+
+    /// m2, k2, c2, D and C, in SI units; NaN for the gaps of a damper without walls.
+    pub fn values(&self) -> [f64; 5] {
+        let [k2, c2, d, c] = self.design.values();
+        [self.mass.get(), k2, c2, d, c]
     }
 }

@@ -5,7 +5,6 @@ pub(crate) mod band;
 mod choice;
 pub(crate) mod descent;
 pub mod ends;
-pub(crate) mod files;
 mod global;
 pub mod log;
 pub mod merge;
@@ -18,7 +17,7 @@ mod surf;
 mod tmd;
 mod valley;
 
-pub(crate) use files::OPTIMUM;
+pub(crate) use log::OPTIMUM;
 pub use optimum::Optimum;
 pub(crate) use optimum::{Found, table2_header, table2_row};
 
@@ -41,11 +40,11 @@ pub static KIND: Kind = Kind {
     answer: OPTIMUM,
     artefacts: &[
         artefact(resolved::ONE, Content::Input),
-        artefact(files::GRID, Content::Rows(again::grid)),
-        artefact(files::LOG, Content::Rows(again::search)),
-        artefact(files::STARTS, Content::Rows(again::search)),
-        artefact(files::BASINS, Content::Rows(again::search)),
-        artefact(files::BAND, Content::Rows(again::band)),
+        artefact(log::GRID, Content::Rows(again::grid)),
+        artefact(log::LOG, Content::Rows(again::search)),
+        artefact(log::STARTS, Content::Rows(again::search)),
+        artefact(log::BASINS, Content::Rows(again::search)),
+        artefact(log::BAND, Content::Rows(again::band)),
         artefact(OPTIMUM, Content::Whole(again::optimum)),
         artefact(certify::FILE, Content::Whole(again::certificate)),
         artefact(report::FILE, Content::Derived),

@@ -3,7 +3,6 @@
 mod manifest;
 mod publish;
 
-use crate::entries::{names, sync_directory};
 use crate::error::Error;
 use crate::identity::{Identity, json_text};
 use crate::journal::Journal;
@@ -12,6 +11,7 @@ use crate::manifest::{MadeBy, NAME, file_sha256};
 use crate::order::{Extent, Order};
 use crate::pending::{self, Pending};
 use crate::plain;
+use crate::plain::{names, sync_directory};
 use crate::unfinished::{self, JOURNAL, UNFINISHED, Unfinished};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};

@@ -16,12 +16,11 @@ mod read;
 mod record;
 
 pub use read::{Damage, Found, Known, MOST_POINTS, read};
-pub use record::{grid_text, grid_value};
+pub use record::{Seal, grid_text, grid_value};
 
 use crate::error::Error;
 use crate::identity::{Identity, hexadecimal};
 use crate::plain;
-use crate::seal::Seal;
 use record::key;
 use std::collections::BTreeSet;
 use std::fs::{File, OpenOptions};

@@ -4,11 +4,11 @@
 //! everyday work. Anything else it is asked to replace in so many words (`--replace`): results of another study, a file that
 //! Retune did not make, or one that was changed after it was made.
 
-use crate::entries::names;
 use crate::error::Error;
 use crate::identity::Identity;
 use crate::manifest::{MadeBy, Manifest, NAME};
 use crate::plain;
+use crate::plain::names;
 use std::path::{Path, PathBuf};
 
 /// The treatment of unfinished work that is found.

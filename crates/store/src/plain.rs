@@ -1,8 +1,7 @@
 //! Opening files at names that others can guess: only plain files, never what a symbolic link points to, a pipe or a device.
 
 use std::fs::{File, OpenOptions};
-use std::io::Read;
-use std::io::{Error, ErrorKind, Result};
+use std::io::{Error, ErrorKind, Read, Result};
 use std::path::{Component, Path, PathBuf};
 
 /// Opens a plain file to read it.
@@ -107,4 +106,25 @@ fn without_links(options: &mut OpenOptions) -> &mut OpenOptions {
 #[cfg(not(unix))]
 fn without_links(options: &mut OpenOptions) -> &mut OpenOptions {
     options
+}
+
+pub(crate) fn names(directory: &Path) -> Result<Vec<String>> {
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(directory)? {
+        names.extend(entry?.file_name().into_string());
+    }
+    names.sort();
+    Ok(names)
+}
+
+/// Waits until the names in a directory are on the disk.
+#[cfg(unix)]
+pub(crate) fn sync_directory(path: &Path) -> Result<()> {
+    File::open(path)?.sync_all()
+}
+
+/// Elsewhere a directory cannot be waited for.
+#[cfg(not(unix))]
+pub(crate) fn sync_directory(_path: &Path) -> Result<()> {
+    Ok(())
 }

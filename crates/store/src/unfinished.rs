@@ -1,6 +1,5 @@
 //! Unfinished work in a directory: found, resumed or discarded.
 
-use crate::entries::names;
 use crate::error::Error;
 use crate::identity::Identity;
 use crate::journal::{self, Damage, Found, Journal, Known};
@@ -8,6 +7,7 @@ use crate::lock::Lock;
 use crate::manifest::{Manifest, NAME};
 use crate::order::Begin;
 use crate::plain;
+use crate::plain::names;
 use std::collections::BTreeSet;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};

@@ -3,9 +3,9 @@
 use super::Formula;
 use super::candidate::{Candidate, What};
 use super::comparison::Comparison;
-use super::question::{broken_at_spaces, limit};
 use super::requirements::{Dampers, Requirements, Wish};
 use super::words::{alike, frequency, legible, parameters, percent, sized, tuning};
+use super::words::{broken_at_spaces, limit};
 use retune_model::Measure;
 use retune_optim::{Limit, Need};
 use retune_study::{counted, rounded};

@@ -1,8 +1,8 @@
 //! The comparison: no damper, the best TMD, an SSVI NES, what each limit costs, and how sure the recommended one is.
 
 use super::candidate::{Candidate, What};
-use super::question::question;
 use super::requirements::{Dampers, Requirements, Wish};
+use super::words::question;
 use super::words::{parameters, sized};
 use super::{Formula, ssvi, tmd};
 use crate::certify::{Certificate, Verdict, judge};

@@ -3,8 +3,8 @@
 use super::answer::{build, findings, rows};
 use super::candidate::{Candidate, What};
 use super::comparison::Comparison;
-use super::question::asked;
 use super::requirements::Requirements;
+use super::words::asked;
 use super::words::{parameters, sized, tuning};
 use super::{curves, drawing};
 use retune_report::document::{Block, Document};

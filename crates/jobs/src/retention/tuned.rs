@@ -1,6 +1,6 @@
 //! Dampers tuned for several stiffnesses of the structure.
 
-use crate::resampled::finer;
+use crate::tune::objective::finer;
 use retune_model::{Design, NonNegative, Positive, Scene};
 use retune_optim::Stiffnesses;
 use retune_study::Study;

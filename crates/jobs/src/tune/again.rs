@@ -1,7 +1,7 @@
 //! The files of a search, computed again: the rows of its grid and its refinements, its band, the design that it found.
 
 use super::band;
-use super::files::{OPTIMUM, SEARCHED};
+use super::log::{OPTIMUM, SEARCHED};
 use super::objective::{coarse, objective, searched};
 use crate::again::{Made, Row, Source, design, json};
 use crate::certify::certify;

@@ -1,6 +1,6 @@
 //! The band of a tuned damper: the objective against ω without a damper, with the damper of the study, and with the tuned one.
 
-use super::files::BAND;
+use super::log::BAND;
 use crate::Error;
 use crate::amount::{self, measured};
 use crate::summary::{MadeBy, baseline};

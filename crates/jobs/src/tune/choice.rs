@@ -5,7 +5,7 @@ use super::refine::{Refined, Run};
 use crate::Error;
 use crate::amount::Amount;
 use crate::certify::{Certificate, Verdict, certify, complete, judge};
-use crate::resampled::worst;
+use crate::tune::objective::worst;
 use retune_model::{Measure, PerVariable};
 use retune_optim::Limit;
 use retune_study::Study;

@@ -1,6 +1,6 @@
 //! The global search of a study, and the basins that it and the refinements found.
 
-use super::files::BASINS;
+use super::log::BASINS;
 use super::log::worth;
 use super::objective::{coarse, kept, searched};
 use super::refine::{Refined, Run, columns};

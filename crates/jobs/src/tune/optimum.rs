@@ -2,11 +2,10 @@
 
 mod answer;
 pub(crate) mod notes;
-mod run;
 
 use super::choice::PassedOver;
 use super::global::{Basins, Explored};
-use super::refine::Refined;
+use super::refine::{Descended, Refined, Run};
 use super::surf::Surf;
 use super::valley::Valley;
 use crate::Error;
@@ -15,10 +14,9 @@ use crate::certify::Certificate;
 use crate::needs::Needs;
 use crate::summary::{MadeBy, Summary, TunedDamper, baseline};
 use notes::{Goal, LimitNote, Met};
-use retune_model::{Parameter, PerVariable, Scene};
-use retune_optim::{Evaluation, Failures, Scaling, Stop, value_of};
+use retune_model::{Measure, Parameter, PerVariable, Scene};
+use retune_optim::{Evaluation, Failures, Minimum, Scaling, Stop, value_of};
 use retune_study::{Search, Study, design_cells, short};
-use run::RunNote;
 use serde::{Serialize, Serializer};
 
 /// The best design and how it was found. SI units.
@@ -251,5 +249,52 @@ pub(crate) fn stop_words(stop: Stop) -> &'static str {
         Stop::MaxIter => "stopped at MaxIter",
         Stop::MaxFunEvals => "stopped at MaxFunEvals",
         Stop::Interrupted => "interrupted",
+    }
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct RunNote {
+    pub(super) start: PerVariable<f64>,
+    #[serde(flatten)]
+    pub(super) at_start: Amount,
+    pub(super) found: PerVariable<f64>,
+    #[serde(flatten)]
+    pub(super) value: Amount,
+    pub(super) iterations: u64,
+    pub(super) func_count: u64,
+    pub(super) stop: Stop,
+    /// The descent by derivatives that went on from there, where it found a better design.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) descent: Option<DescentNote>,
+}
+
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(super) struct DescentNote {
+    #[serde(flatten)]
+    pub(super) from: Amount,
+    pub(super) evaluations: u64,
+}
+
+impl RunNote {
+    pub(super) fn new(run: &Run, quantity: Measure, over: impl Fn(&[f64]) -> PerVariable<f64>) -> Self {
+        let Minimum { x, value, iterations, func_count, stop, .. } = &run.minimum;
+        let (start, at_start) = match run.rows.first() {
+            Some(row) => (over(&row.best), value_of(row.value)),
+            None => (PerVariable::default(), f64::NAN),
+        };
+        let (iterations, func_count) = (*iterations, *func_count);
+        Self {
+            start,
+            at_start: Amount::of(quantity, "_start", at_start),
+            found: over(x),
+            value: Amount::new(quantity, value_of(*value)),
+            iterations,
+            func_count,
+            stop: *stop,
+            descent: run.descent.map(|Descended { from, evaluations }| DescentNote {
+                from: Amount::of(quantity, "_before", value_of(from)),
+                evaluations,
+            }),
+        }
     }
 }

@@ -1,8 +1,8 @@
 //! The fine stage: `fminsearch` from each start, with its log.
 
-use super::files::LOG;
-use super::files::STARTS;
 use super::log;
+use super::log::LOG;
+use super::log::STARTS;
 use super::objective::{kept, searched};
 use crate::Error;
 use crate::Observer;

@@ -1,6 +1,6 @@
 //! The coarse stage: the objective on a grid.
 
-use super::files::GRID;
+use super::log::GRID;
 use super::log::worth;
 use super::objective::{coarse, kept, searched};
 use super::refine::columns;

@@ -1,12 +1,12 @@
 //! Publication: the new results take the place of the earlier ones.
 
 use super::Directory;
-use crate::entries::{names, sync_directory};
 use crate::error::Error;
 use crate::identity::json_text;
 use crate::manifest::{Manifest, NAME, file_sha256};
 use crate::order::Extent;
 use crate::pending::Pending;
+use crate::plain::{names, sync_directory};
 use crate::{plain, unfinished};
 use std::collections::BTreeSet;
 use std::fs::File;

@@ -1,11 +1,11 @@
 //! Reading a journal, damaged or not: complete records are kept, damaged ones counted.
 
+use super::record::Seal;
 use super::record::{Key, bits, grid_value};
 use crate::error::Error;
 use crate::identity::Identity;
 use crate::pending::Pending;
 use crate::plain;
-use crate::seal::Seal;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::io::{BufRead, BufReader, ErrorKind};
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! The answer of a search in words: what to build, what it does, how sure that is, and what to do next. Lines fit 80 columns.
 
 use super::notes::{self, Goal, LimitNote};
-use super::run::{DescentNote, RunNote};
+use super::{DescentNote, RunNote};
 use super::{FailureNote, Optimum, Valley, stop_words};
 use crate::amount::Amount;
 use crate::certify::Verdict;
@@ -19,6 +19,7 @@ const HELD: &str = "\u{a0}";
 const HYPHEN: &str = "\u{2011}";
 
 impl Optimum {
+    /// The last lines on screen.
     pub fn report(&self) -> String {
         let mut lines = vec![String::new()];
         let mut say = |words: String| lines.push(wrapped(&words, "  "));
@@ -46,6 +47,7 @@ impl Optimum {
         lines.join("\n")
     }
 
+    /// How the search went, for the log.
     pub fn search(&self) -> String {
         let winner = self.refine.winner;
         let RunNote { iterations, func_count, stop, descent, .. } = &self.refine.runs[winner - 1];
