@@ -102,9 +102,6 @@ pub(crate) fn again(study: &Study, said: serde_json::Value) -> Made {
 }
 
 /// The same as far as the verdict goes: other starts than rest are not looked at where it is decided without, nor are other walls.
-///
-/// # Errors
-/// As [`certify`].
 pub fn judge(study: &Study) -> Result<Certificate, Error> {
     measure::measure(study, damper_of(study)?, OtherStarts::WhereTheyDecide)
 }
@@ -118,9 +115,6 @@ fn damper_of(study: &Study) -> Result<&Damper, Error> {
 }
 
 /// Refuses the results of a search in `out` whose design breaks the limits of its study.
-///
-/// # Errors
-/// [`Error::Infeasible`].
 pub fn check_limits_in(out: &Path, study: &str) -> Result<(), Error> {
     let text = std::fs::read_to_string(out.join(FILE)).unwrap_or_default();
     let said: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();

@@ -30,12 +30,11 @@ pub struct Designs {
 
 /// A row of the table.
 #[derive(Clone, Debug, Serialize)]
+#[expect(missing_docs, reason = "their names say it")]
 pub struct Row {
     /// The entry in the column of its own.
     pub label: String,
-    /// The name of the damper.
     pub damper: String,
-    /// The damper itself.
     #[serde(flatten)]
     pub found: TunedDamper,
     /// The E1max that the paper prints for it, J.
@@ -81,9 +80,6 @@ impl Row {
 
 impl Designs {
     /// Writes the table as `name.csv` and `name.txt`.
-    ///
-    /// # Errors
-    /// A file cannot be written.
     pub fn write(&self, name: &str, results: &Directory) -> Result<(), Error> {
         results.write(&format!("{name}.csv"), &self.table().csv())?;
         Ok(results.write(&format!("{name}.txt"), &(self.text() + "\n"))?)

@@ -64,10 +64,9 @@ fn shown(text: &str) -> String {
 }
 
 /// The input of designs and the outputs.
+#[expect(missing_docs, reason = "their names say it")]
 pub struct Streams<'a, I> {
-    /// Designs, one per line.
     pub input: I,
-    /// One answer for each.
     pub answers: &'a mut (dyn Write + Send),
     /// Receives a message for each line without a value.
     pub complaints: &'a mut (dyn FnMut(&str) + Send),

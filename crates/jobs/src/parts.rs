@@ -30,10 +30,9 @@ const ENDING: &str = ".part";
 
 /// Share number `index`, from 1, of `count`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "their names say it")]
 pub struct Shard {
-    /// Its number, from 1.
     pub index: usize,
-    /// Number of shares.
     pub count: usize,
 }
 
@@ -81,14 +80,13 @@ struct Head {
 }
 
 /// Rows of which shares become parts, in the directory of their results.
+#[expect(missing_docs, reason = "their names say it")]
 pub struct Shared<'a> {
-    /// The rows.
     pub rows: &'a dyn Rows,
     /// The identity of the whole work.
     pub identity: Identity,
     /// The directory of its results; parts are in [`PARTS`] in it.
     pub out: &'a Path,
-    /// The request for it.
     pub order: &'a Order,
     /// The command that makes a part, without `--shard`.
     pub command: String,
@@ -96,9 +94,6 @@ pub struct Shared<'a> {
 
 impl Shared<'_> {
     /// Computes a share and writes it, unless the part is there already.
-    ///
-    /// # Errors
-    /// A part of another work is there, or the part cannot be written.
     pub fn make(&self, shard: Shard, watch: &dyn Observer) -> Result<(), Error> {
         let Self { rows, ref identity, out, order, .. } = *self;
         let (len, width, parts) = (rows.len(), rows.width(), out.join(PARTS));
@@ -184,9 +179,6 @@ fn find(parts: &Path, shard: Shard) -> Result<Option<PathBuf>, Error> {
 }
 
 /// The parts in a directory, sorted; an empty list if there is no directory.
-///
-/// # Errors
-/// It cannot be read.
 fn list(parts: &Path) -> Result<Vec<PathBuf>, Error> {
     let refuse = |source| retune_store::Error::Input { path: parts.to_owned(), source };
     let mut found = Vec::new();
@@ -204,9 +196,6 @@ fn list(parts: &Path) -> Result<Vec<PathBuf>, Error> {
 }
 
 /// Reads a part and calls `visit` with each of its points and its value.
-///
-/// # Errors
-/// It cannot be read, or is incomplete.
 fn read(path: &Path, mut visit: impl FnMut(usize, f64)) -> Result<Head, Error> {
     let refuse = |source| retune_store::Error::Input { path: path.to_owned(), source };
     let broken = |problem: &str| Error::Part { path: path.to_owned(), problem: problem.to_owned() };

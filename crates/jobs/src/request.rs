@@ -7,16 +7,14 @@ use std::path::{Path, PathBuf};
 
 /// The options of a job.
 #[derive(Clone, Debug, Default)]
+#[expect(missing_docs, reason = "their names say it")]
 pub struct Request {
-    /// The study file.
     pub study: PathBuf,
     /// Directory of the results; by default that of the job.
     pub out: Option<PathBuf>,
     /// Number of threads; by default all cores. The results are the same for any number.
     pub threads: Option<u16>,
-    /// The treatment of existing unfinished work.
     pub begin: Begin,
-    /// Whether other results may be replaced.
     pub replace: bool,
 }
 

@@ -64,9 +64,6 @@ pub fn tune(request: &Request, watch: &dyn Observer) -> Result<Done<Optimum>, Er
 }
 
 /// Tunes the damper of a study that is at hand; `request.study` is what its results are said to be made of.
-///
-/// # Errors
-/// As [`tune`].
 pub fn tune_study(study: &Study, request: &Request, watch: &dyn Observer) -> Result<Done<Optimum>, Error> {
     let search = searched(study)?;
     run(study, request, watch, |results| tuned(study, &search, results, watch))

@@ -6,10 +6,9 @@ use crate::colour::BLACK;
 
 /// A side of the grid.
 #[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "their names say it")]
 pub struct Nodes {
-    /// The quantity with its unit.
     pub label: String,
-    /// Its spacing.
     pub scale: Scale,
     /// Its values, ascending.
     pub values: Vec<f64>,

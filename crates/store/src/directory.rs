@@ -75,9 +75,6 @@ impl Directory {
     }
 
     /// The directory `name` below this one, for a search that is part of the work.
-    ///
-    /// # Errors
-    /// A symbolic link stands in its place.
     pub fn part(&self, name: &str) -> Result<PathBuf, Error> {
         let part = plain::below(&self.path, name).map_err(|source| self.refused(source))?;
         self.journal.note_part(name);
@@ -131,17 +128,11 @@ impl Directory {
     }
 
     /// Begins the file `name`.
-    ///
-    /// # Errors
-    /// It cannot be made.
     pub fn file(&self, name: &str) -> Result<Pending, Error> {
         Pending::create(&self.unfinished.join(name))
     }
 
     /// Writes the whole file `name`.
-    ///
-    /// # Errors
-    /// It cannot be written.
     pub fn write(&self, name: &str, text: &str) -> Result<(), Error> {
         let mut file = self.file(name)?;
         file.push(text)?;
@@ -149,9 +140,6 @@ impl Directory {
     }
 
     /// Writes `value` as the JSON file `name`.
-    ///
-    /// # Errors
-    /// It cannot be written.
     pub fn write_json(&self, name: &str, value: &impl serde::Serialize) -> Result<(), Error> {
         self.write(name, &json_text(value, name)?)
     }
@@ -162,9 +150,6 @@ impl Directory {
     }
 
     /// The names of the complete results, sorted.
-    ///
-    /// # Errors
-    /// The directory cannot be read.
     pub fn whole(&self) -> Result<Vec<String>, Error> {
         let mut names = names(&self.unfinished).map_err(|source| self.refused(source))?;
         names.retain(|name| name != JOURNAL && !name.ends_with(".item") && !name.starts_with('.'));

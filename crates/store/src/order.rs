@@ -123,9 +123,6 @@ impl MadeBy {
 
 /// Checks that a file may be written at `path`: an existing one is only replaced if it is a plain file, none of `inputs`, and begins
 /// with `head`, as all such files of Retune do.
-///
-/// # Errors
-/// [`Error::Protected`].
 pub fn may_write(path: &Path, inputs: &[&Path], head: &str) -> Result<(), Error> {
     let protected = |problem: &str| Error::Protected { path: path.to_owned(), problem: problem.to_owned() };
     if inputs.iter().any(|input| is_same(path, input)) {

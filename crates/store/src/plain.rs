@@ -14,9 +14,6 @@ pub fn open(path: &Path) -> Result<File> {
 }
 
 /// Reads a plain file as text.
-///
-/// # Errors
-/// As [`open`]; or it is no text.
 pub fn text(path: &Path) -> Result<String> {
     let mut text = String::new();
     open(path)?.read_to_string(&mut text)?;
@@ -59,9 +56,6 @@ pub fn open_with(path: &Path, options: &mut OpenOptions) -> Result<File> {
 }
 
 /// Makes a new file, in place of one that an earlier process left.
-///
-/// # Errors
-/// It cannot be made.
 pub fn create(path: &Path) -> Result<File> {
     let mut options = OpenOptions::new();
     options.write(true).create_new(true); // which follows no link
@@ -75,9 +69,6 @@ pub fn create(path: &Path) -> Result<File> {
 }
 
 /// Whether a plain file stands there.
-///
-/// # Errors
-/// Something else does, or it cannot be told.
 pub fn is_there(path: &Path) -> Result<bool> {
     let kind = match path.symlink_metadata() {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(false),

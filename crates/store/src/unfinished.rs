@@ -65,9 +65,6 @@ impl Unfinished {
 
     /// Starts the run in its directory. Returns the journal, the directories below whose work is discarded, and a warning where the
     /// journal was damaged.
-    ///
-    /// # Errors
-    /// The journal cannot be written.
     pub fn take_up(
         self,
         unfinished: &Path,
@@ -150,9 +147,6 @@ fn clear(directory: &Path, keep: impl Fn(&str) -> bool) -> std::io::Result<()> {
 }
 
 /// Removes unfinished work. Its journal is removed last: without one the directory is not recognised as Retune's.
-///
-/// # Errors
-/// A file cannot be removed.
 pub fn remove(unfinished: &Path) -> std::io::Result<()> {
     clear(unfinished, |name| name == JOURNAL)?;
     clear(unfinished, |_| false)?;
@@ -161,9 +155,6 @@ pub fn remove(unfinished: &Path) -> std::io::Result<()> {
 
 /// Removes the results that Retune made in a directory, and the directory if nothing else is in it. Everything
 /// stays where there is unfinished work that must not be removed, or where another process is at work.
-///
-/// # Errors
-/// A file cannot be removed.
 pub fn remove_results(place: &Path, with_unfinished: bool) -> std::io::Result<()> {
     let is_directory = place.symlink_metadata().is_ok_and(|metadata| metadata.is_dir());
     let Some(lock) = is_directory.then(|| Lock::take(place).ok()).flatten() else { return Ok(()) };

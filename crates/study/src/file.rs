@@ -76,9 +76,6 @@ pub(super) fn parse<T: DeserializeOwned + Serialize>(text: &str, file: &str) -> 
 }
 
 /// The kind of a study file. What cannot be recognised counts as a study of one damper, whose reader says what is wrong with it.
-///
-/// # Errors
-/// The file cannot be read.
 pub fn kind_of(path: &Path) -> Result<Kind, StudyError> {
     let json: Result<Value, _> = serde_json::from_str(&read_text(path)?);
     Ok(json.ok().as_ref().and_then(Kind::of).unwrap_or_default())

@@ -58,9 +58,6 @@ pub(super) fn named(path: &Path) -> Result<Study, StudyError> {
 }
 
 /// The directory of the results that a path names: itself, or that of the `optimum.json` that it is; none of a study file.
-///
-/// # Errors
-/// The file cannot be read.
 pub fn found_in(path: &Path) -> Result<Option<PathBuf>, StudyError> {
     if path.is_dir() {
         return Ok(Some(path.to_owned()));
@@ -93,9 +90,6 @@ fn design(text: &str, file: &str) -> Result<Design, StudyError> {
 }
 
 /// Checks the text of a study file as [`read`] does.
-///
-/// # Errors
-/// As [`read`].
 pub fn from_text(text: &str, file: &str) -> Result<Study, StudyError> {
     expect(Kind::Study, text, file)?;
     let base = Path::new(file).parent().unwrap_or(Path::new(""));

@@ -39,9 +39,6 @@ pub struct Search {
 
 impl Study {
     /// Checks the rules between the fields.
-    ///
-    /// # Errors
-    /// The first [`Rule`] that is broken.
     pub fn check(&self) -> Result<(), Rule> {
         check_name(self.name())?;
         self.check_rigid()?;
@@ -89,9 +86,6 @@ impl Study {
     }
 
     /// The search of the study.
-    ///
-    /// # Errors
-    /// The first [`Rule`] that is broken.
     pub fn search(&self) -> Result<Search, Rule> {
         let optimize = self.optimize.as_ref().ok_or(Rule::NoOptimize)?;
         let damper = self.scene.damper.ok_or(Rule::NoDamper)?;
@@ -292,9 +286,6 @@ pub fn name_from(stem: &str) -> String {
 }
 
 /// Whether a directory of results may have this name.
-///
-/// # Errors
-/// [`Rule::Name`].
 pub fn check_name(name: &str) -> Result<(), Rule> {
     if name.is_empty() || name.starts_with('.') || !name.chars().all(is_plain) {
         return Err(Rule::Name { name: name.to_owned() });

@@ -173,9 +173,6 @@ impl Study {
 }
 
 /// A state at t = 0 from `x1,v1,x2,v2` (m, m/s), or from `x1,v1`, where the damper's spring is at rest.
-///
-/// # Errors
-/// It is something else.
 pub fn start(text: &str) -> Result<Start, SettingError> {
     let refused = || SettingError::Start { text: text.to_owned() };
     let number = |text: &str| text.trim().parse().ok().and_then(|value| Finite::new(value).ok());
@@ -189,9 +186,6 @@ pub fn start(text: &str) -> Result<Start, SettingError> {
 
 impl Study {
     /// Refuses a scene whose forced motion does not begin at rest, for whoever compares with runs from rest.
-    ///
-    /// # Errors
-    /// The scene has a start beside its force.
     pub fn begins_at_rest(&self) -> Result<(), Rule> {
         match self.scene.forcing.start {
             None => Ok(()),

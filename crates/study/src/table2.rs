@@ -96,9 +96,6 @@ pub fn read_table2(path: &Path) -> Result<Vec<PaperStudy>, StudyError> {
 }
 
 /// Reads a table with its studies, each with the paper's design in its scene.
-///
-/// # Errors
-/// As [`read_table2`].
 pub fn read_rows(path: &Path) -> Result<(Table2, Vec<PaperStudy>), StudyError> {
     let file = path.display().to_string();
     let text = read_plan_text(path)?;

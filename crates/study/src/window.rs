@@ -21,9 +21,6 @@ const MOST_PERIODS: f64 = 10_000.0;
 impl Span {
     /// The window that begins once the slowest transient of a scene, with its walls open, is below [`LEFT`] of its start, and lasts 50
     /// periods of the force; of a free decay, from the start until then, and of a pulse or a record as long after its end.
-    ///
-    /// # Errors
-    /// Nothing damps the scene enough.
     pub fn settled(scene: &Scene) -> Result<Self, Rule> {
         let rate = scene.slowest_decay();
         let period = TAU / scene.forcing.frequency.get();

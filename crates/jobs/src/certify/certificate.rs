@@ -124,9 +124,6 @@ impl Certificate {
     }
 
     /// Refuses a design that breaks the limits of its study, for which there is no verdict.
-    ///
-    /// # Errors
-    /// [`Error::Infeasible`].
     pub fn check_limits(&self) -> Result<(), Error> {
         match self.judged.verdict {
             Some(_) => Ok(()),

@@ -76,9 +76,6 @@ impl Comparison {
     }
 
     /// Refuses a comparison of which no damper keeps the limits.
-    ///
-    /// # Errors
-    /// [`Error::Infeasible`].
     pub fn check_limits(&self) -> Result<(), Error> {
         match self.choice {
             Some(_) => Ok(()),

@@ -14,23 +14,20 @@ use std::f64::consts::TAU;
 
 /// What is asked of a design. SI units.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "their names say it")]
 pub struct Requirements {
-    /// Mass of the structure, kg.
     pub m1: f64,
     /// Its stiffness, N/m.
     pub k1: f64,
     /// Its damping, N·s/m.
     pub c1: f64,
-    /// What moves it.
     #[serde(flatten)]
     pub source: Driving,
     /// The angular frequencies of the forcing, rad/s.
     pub band: [f64; 2],
     /// The unit in which frequencies are told: Hz, rpm or rad/s.
     pub frequencies: &'static str,
-    /// Mass of the damper, kg.
     pub mass: f64,
-    /// What is made small.
     pub goal: Measure,
     /// The largest value allowed of quantities.
     pub limits: Limits,
@@ -38,7 +35,6 @@ pub struct Requirements {
     pub k2_max: Option<f64>,
     /// Share by which k1 may be off.
     pub k1_error: Option<f64>,
-    /// The dampers that are compared.
     pub dampers: Dampers,
     /// The walls of an SSVI NES.
     pub wall: Option<Wall>,
@@ -201,9 +197,6 @@ impl Requirements {
     }
 
     /// The study of the TMD: steady, in closed form, k2 and c2 free, without walls.
-    ///
-    /// # Errors
-    /// A number is beyond what a study may hold.
     pub fn tmd(&self) -> Result<Study, Error> {
         let ([k2, c2], _, size) = self.scales()?;
         let most = self.k2_max.unwrap_or(20.0 * k2);
@@ -233,9 +226,6 @@ impl Requirements {
     }
 
     /// The study of the SSVI NES: runs from rest, all four parameters free.
-    ///
-    /// # Errors
-    /// As [`Self::tmd`].
     pub fn ssvi(&self) -> Result<Study, Error> {
         let ([k2, c2], reach, size) = self.scales()?;
         let most = self.k2_max.unwrap_or(4.0 * k2);
@@ -277,9 +267,6 @@ impl Requirements {
 
     /// The walls of the damper. Where none are given they are the paper's, in proportion to the mass and to the square of the natural
     /// frequency: a contact then takes about the same share of a period.
-    ///
-    /// # Errors
-    /// There are none for its mass.
     pub fn contact(&self) -> Result<Surfaces, Error> {
         let scale = (self.natural_frequency() / PAPER).powi(2);
         let paper = Surfaces::for_mass(Positive::new(self.mass * scale)?)?;

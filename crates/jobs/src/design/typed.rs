@@ -90,9 +90,6 @@ pub struct Wishes {
 
 impl Wishes {
     /// Reads a file of requirements.
-    ///
-    /// # Errors
-    /// It cannot be read, or holds a field that is not known.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let file = path.display().to_string();
         let text = retune_store::plain::text(path)

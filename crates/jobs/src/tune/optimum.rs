@@ -198,9 +198,6 @@ impl Optimum {
     }
 
     /// Refuses a design that breaks the limits of its study.
-    ///
-    /// # Errors
-    /// [`Error::Infeasible`].
     pub fn check_limits(&self) -> Result<(), Error> {
         self.certificate.check_limits()
     }

@@ -11,9 +11,6 @@ use std::path::Path;
 
 impl Directory {
     /// Writes the manifest of all complete results, made by `solvers`; it must be the last file.
-    ///
-    /// # Errors
-    /// A file cannot be read or written.
     pub fn write_manifest(&self, solvers: impl IntoIterator<Item = impl Serialize>) -> Result<(), Error> {
         let mut files = self.new_files()?;
         let mut earlier = BTreeMap::new();
@@ -48,9 +45,6 @@ impl Directory {
     }
 
     /// Adds the new files to the existing manifest: they belong to results that are not changed.
-    ///
-    /// # Errors
-    /// A file cannot be read or written.
     pub fn amend_manifest(&self) -> Result<(), Error> {
         let Some(mut manifest) = Manifest::read(&self.path)? else { return Ok(()) };
         manifest.files.extend(self.new_files()?);

@@ -90,9 +90,6 @@ impl Directory {
     }
 
     /// Puts the new results into place and removes what the work left behind.
-    ///
-    /// # Errors
-    /// As [`Self::publish`].
     pub fn finish(self) -> Result<(), Error> {
         self.publish()?;
         unfinished::remove(&self.unfinished).map_err(|source| self.refused(source))

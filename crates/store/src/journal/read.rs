@@ -60,9 +60,6 @@ pub enum Found {
 }
 
 /// Reads a journal. Where its first line is damaged, its records tell whether it is of the work `ours`.
-///
-/// # Errors
-/// It cannot be read.
 pub fn read(path: &Path, ours: &Identity) -> std::io::Result<Found> {
     let mut lines = BufReader::new(match plain::open(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Found::Nothing),
@@ -102,9 +99,6 @@ pub fn read(path: &Path, ours: &Identity) -> std::io::Result<Found> {
 }
 
 /// Replaces a damaged journal: a first line, and every complete record. The old file stays until the new one is complete.
-///
-/// # Errors
-/// It cannot be read or written.
 pub fn mend(path: &Path, identity: &Identity) -> Result<(), Error> {
     let refuse = |source| Error::Output { path: path.to_owned(), source };
     let mut lines = BufReader::new(plain::open(path).map_err(refuse)?);
