@@ -4,8 +4,6 @@
 mod answer;
 mod candidate;
 mod comparison;
-mod curves;
-mod drawing;
 mod modes;
 mod page;
 mod reading;

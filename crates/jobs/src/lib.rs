@@ -63,7 +63,6 @@ mod pages;
 pub mod paper;
 pub mod parts;
 pub mod prove;
-mod request;
 pub mod resolved;
 pub mod retention;
 pub mod rows;
@@ -76,6 +75,5 @@ pub mod tune;
 pub mod verify;
 
 pub use error::Error;
-pub use job::Done;
+pub use job::{Done, Request};
 pub use observer::{Observer, Progress, Silent};
-pub use request::Request;

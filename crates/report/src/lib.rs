@@ -37,7 +37,6 @@ mod chart;
 pub mod colour;
 pub mod document;
 mod draw;
-mod heat_map;
 pub mod html;
 mod layout;
 mod path;
@@ -48,7 +47,6 @@ mod text;
 mod ticks;
 
 pub use axis::{Axis, Scale, scale_for};
-pub use chart::{Chart, Dash, Key, Layer, Mark, Shape, Stand, Stroke};
-pub use heat_map::{Nodes, Place, heat_map};
+pub use chart::{Chart, Dash, Key, Layer, Mark, Nodes, Place, Shape, Stand, Stroke, heat_map};
 pub use sheet::{Drawing, Sheet, Width, drawing, svg};
 pub use ticks::ten_to;

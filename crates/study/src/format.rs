@@ -5,9 +5,10 @@ use super::global::GlobalSearch;
 use retune_model::{NonNegative, Parameter, PerVariable, Positive, Scene};
 use retune_optim::{Limits, Objective, Options, Scale};
 use retune_solver::{Contacts, Method, Settings, Window};
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema, schema_for};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 
 /// A study: a structure with its damper, the time window of the evaluation, and the parameters to tune. A number is in its SI unit, or a text
@@ -282,4 +283,60 @@ fn read_varied<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Paramet
 fn varied_schema(_: &mut SchemaGenerator) -> Schema {
     let one = |parameter: Parameter| json_schema!({ "type": "string", "const": parameter.symbol(), "description": parameter.sentence() });
     json_schema!({ "type": "array", "minItems": 1, "items": { "oneOf": Parameter::VARIED.map(one) } })
+}
+
+/// Definitions whose numbers may be texts, by their names or what these begin with. Numbers without a unit are of other types, or their texts
+/// are refused by the reader.
+const NUMBERS: [&str; 9] = [
+    "Positive",
+    "NonNegative",
+    "Finite",
+    "Margins",
+    "GridAxis",
+    "BoxSide",
+    "K1Range",
+    "Band",
+    "PerVariable_",
+];
+
+/// A number in quotes is a slip.
+const MORE_THAN_A_NUMBER: &str = "[^-+.0-9eE ]";
+
+/// The schema of a kind of file.
+pub fn schema<T: JsonSchema>() -> Schema {
+    let mut schema = schema_for!(T);
+    if let Some(Value::Object(all)) = schema.get_mut("$defs") {
+        for (name, of) in all.iter_mut() {
+            if NUMBERS.iter().any(|known| name == known || known.ends_with('_') && name.starts_with(known)) {
+                widen(of);
+            }
+        }
+    }
+    schema
+}
+
+/// Lets a text stand in the place of each number. Keywords on the size of numbers say nothing of texts.
+fn widen(schema: &mut Value) {
+    match schema {
+        Value::Object(keywords) => {
+            widen_type(keywords);
+            keywords.values_mut().for_each(widen);
+        }
+        Value::Array(all) => all.iter_mut().for_each(widen),
+        _ => {}
+    }
+}
+
+fn widen_type(keywords: &mut Map<String, Value>) {
+    let Some(of) = keywords.get_mut("type") else { return };
+    match of {
+        Value::String(one) if one == "number" => *of = json!(["number", "string"]),
+        Value::Array(several) if several.contains(&json!("number")) => several.push(json!("string")),
+        _ => return,
+    }
+    let words = keywords.get("description").and_then(Value::as_str).map(|words| format!("{words} "));
+    let words =
+        format!("{}A number in the SI unit, or a text with a unit: \"20 kN/m\".", words.unwrap_or_default());
+    keywords.insert("description".to_owned(), words.into());
+    keywords.insert("pattern".to_owned(), MORE_THAN_A_NUMBER.into());
 }

@@ -26,7 +26,6 @@
 #[cfg(any(test, fuzzing))]
 pub mod any_text;
 mod built_in;
-mod explain;
 mod file;
 mod format;
 mod fronts;
@@ -35,7 +34,6 @@ mod objective;
 pub mod read;
 mod records;
 mod rule;
-mod schema;
 mod search;
 mod set;
 mod table2;
@@ -45,12 +43,11 @@ mod words;
 
 pub use built_in::is_built_in;
 pub use file::{Kind, StudyError, kind_of};
-pub use format::{Coarse, GridAxis, Margins, Optimize, Refine, Solver, Span, Study};
+pub use format::{Coarse, GridAxis, Margins, Optimize, Refine, Solver, Span, Study, schema};
 pub use fronts::{Fronts, FrontsPlan, Sweep, bounded, read_fronts};
 pub use global::GlobalSearch;
 pub use read::{found_in, read, read_paper};
 pub use rule::Rule;
-pub use schema::schema;
 pub use search::{MOST_GRID_POINTS, Search, check_name, clipped, name_from};
 pub use set::{Settable, Setting, SettingError, start};
 pub use table2::{PaperStudy, SpringBounds, Table2, is_of_paper, read_rows, read_table2};

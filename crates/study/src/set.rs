@@ -69,7 +69,7 @@ pub struct Setting {
 pub enum SettingError {
     #[error("\"{text}\" is not of the form NAME=VALUE, for instance k1=30000")]
     Form { text: String },
-    #[error("unknown parameter `{name}`{}", super::explain::suggestion(name, &symbols()))]
+    #[error("unknown parameter `{name}`{}", super::file::suggestion(name, &symbols()))]
     Name { name: String },
     #[error("{name}: {problem}")]
     Number { name: Settable, problem: String },

@@ -1,16 +1,14 @@
 //! The contents of a certificate.
 
 mod limits;
-mod margin;
 pub(super) mod measured;
 mod motions;
 mod text;
 pub(super) mod verdict;
 
 pub use limits::{Kept, Near};
-pub use margin::{Error as ParameterError, Margin, Other};
 pub use measured::{FINER, Measured, Motion, Neighbourhood, Run, Sensitivity, WorstRun};
-pub use motions::{Another, Irregular, MISSED, Motions, SHARE, periodic};
+pub use motions::{Another, Irregular, MISSED, Margin, Motions, Other, ParameterError, SHARE, periodic};
 pub use verdict::{Judged, Verdict};
 
 use super::records::Records;

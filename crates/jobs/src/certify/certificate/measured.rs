@@ -1,8 +1,7 @@
 //! The measurements that a certificate is made from.
 
 use super::limits::Kept;
-use super::margin::Margin;
-use super::motions::Motions;
+use super::motions::{Margin, Motions};
 use crate::amount::Amount;
 use retune_dynamics::{Kind, Regime};
 use retune_solver::Method;
