@@ -148,8 +148,7 @@ fn picture(findings: &Findings, window: Window, rows: &[Sample]) -> Drawing {
             95.0,
         ));
     }
-    let top = rows.iter().map(|row| row.e1).fold(0.0, f64::max);
-    let axis = Axis::linear("E1, J", (0.0, if top > 0.0 { 1.06 * top } else { 1.0 }));
+    let axis = Axis::from_zero("E1, J", rows.iter().map(|row| row.e1));
     charts.push(chart(
         "energy of the structure",
         axis,
@@ -158,7 +157,6 @@ fn picture(findings: &Findings, window: Window, rows: &[Sample]) -> Drawing {
     ));
     let names: Vec<&str> = charts.iter().map(|chart| chart.title.as_str()).collect();
     drawing(&Sheet {
-        title: "Motion at the worst frequency".to_owned(),
         description: format!(
             "Against time from {} to {} s, one below the other: {}.",
             four(window.from),
@@ -166,11 +164,9 @@ fn picture(findings: &Findings, window: Window, rows: &[Sample]) -> Drawing {
             names.join(", ")
         ),
         width: Width::Page,
-        charts,
-        columns: 1,
         stacked: true,
         legend,
-        caption: Vec::new(),
+        ..Sheet::of("Motion at the worst frequency", charts)
     })
 }
 

@@ -114,15 +114,15 @@ fn picture(findings: &Findings, curves: &Curves, curve: Curve<'_>) -> Drawing {
     let y = if log {
         Axis::around(&*label, Scale::Log, values.iter().flatten().copied())
     } else {
-        Axis::linear(&*label, (0.0, if high > 0.0 { 1.06 * high } else { 1.0 }))
+        Axis::from_zero(&*label, [high])
     };
     let mut layers = Vec::new();
     if !curves.is_objective {
         layers.push(Layer::Upright { x: omega, stroke: Stroke::new(GREY, 1.0, Dash::Dots) });
     }
     for (curve, (_, stroke)) in values.iter().zip(lines) {
-        let points = curves.omega.iter().copied().zip(curve.iter().copied()).collect();
-        layers.push(Layer::Line { points, stroke });
+        let points = curves.omega.iter().copied().zip(curve.iter().copied());
+        layers.push(Layer::line(points, stroke));
     }
     let mark = Mark { rim: true, ..Mark::new(Shape::Disc, VERMILION, 5.0) };
     layers.push(Layer::Marks { points: vec![(omega, worst)], mark });
@@ -137,17 +137,11 @@ fn picture(findings: &Findings, curves: &Curves, curve: Curve<'_>) -> Drawing {
             four(omega)
         ),
     ));
-    let chart = Chart {
-        title: String::new(),
-        x: Axis::linear("ω, rad/s", range).with_second("frequency, Hz", HERTZ),
-        y,
-        layers,
-        height: 210.0,
-    };
+    let chart =
+        Chart::of(Axis::linear("ω, rad/s", range).with_second("frequency, Hz", HERTZ), y, layers, 210.0);
     let said: Vec<String> =
         lines.iter().zip(top).map(|((line, _), top)| format!("{line} {} {unit}", four(top))).collect();
     drawing(&Sheet {
-        title: format!("{name} against the frequency of the force"),
         description: format!(
             "{name} against ω from {} to {} rad/s on a {} scale. Highest points: {}.",
             four(range.0),
@@ -156,11 +150,8 @@ fn picture(findings: &Findings, curves: &Curves, curve: Curve<'_>) -> Drawing {
             said.join(", ")
         ),
         width: Width::Page,
-        charts: vec![chart],
-        columns: 1,
-        stacked: false,
         legend,
-        caption: Vec::new(),
+        ..Sheet::of(format!("{name} against the frequency of the force"), vec![chart])
     })
 }
 

@@ -114,17 +114,15 @@ fn picture(findings: &Findings) -> Drawing {
     layers.push(Layer::Upright { x: own, stroke: rule });
     let values: Vec<f64> =
         bars.iter().map(|one| one.worst).chain([own, near.low, near.median, near.high]).collect();
-    let chart = Chart {
-        title: String::new(),
-        x: Axis::around(label(quantity), scale_for(&values), values.iter().copied()),
-        y: Axis::of_names((place(last) - 0.7, 0.7), names),
+    let chart = Chart::of(
+        Axis::around(label(quantity), scale_for(&values), values.iter().copied()),
+        Axis::of_names((place(last) - 0.7, 0.7), names),
         layers,
-        height: ROW * (last as f64 + 1.4) + 30.0,
-    };
+        ROW * (last as f64 + 1.4) + 30.0,
+    );
     let said: Vec<String> =
         bars.iter().map(|one| format!("{} {}", one.parameter, amount(one.worst, quantity))).collect();
     drawing(&Sheet {
-        title: format!("{name} with one parameter off by at most 1 %"),
         description: format!(
             "A bar for each parameter from the design's {name}, {}, to the largest: {}. Neighbours: {} to {}.",
             amount(own, quantity),
@@ -133,9 +131,6 @@ fn picture(findings: &Findings) -> Drawing {
             amount(near.high, quantity)
         ),
         width: Width::Page,
-        charts: vec![chart],
-        columns: 1,
-        stacked: false,
         legend: vec![
             (Key::Line(rule), "the design".to_owned()),
             (Key::Area(VERMILION, 1.0), "largest within 1 % of one parameter".to_owned()),
@@ -145,6 +140,6 @@ fn picture(findings: &Findings) -> Drawing {
             ),
             (Key::Mark(median), "their median".to_owned()),
         ],
-        caption: Vec::new(),
+        ..Sheet::of(format!("{name} with one parameter off by at most 1 %"), vec![chart])
     })
 }
