@@ -82,8 +82,7 @@ pub fn each_row(path: &Path, mut visit: impl FnMut(usize, Row)) -> Result<(), Er
 }
 
 pub fn text(place: &Path, name: &str) -> Result<String, Error> {
-    let path = place.join(name);
-    Ok(retune_store::plain::text(&path).map_err(|source| retune_store::Error::Input { path, source })?)
+    Ok(retune_store::plain::text(&place.join(name))?)
 }
 
 pub fn json(place: &Path, name: &str) -> Result<Value, Error> {

@@ -52,8 +52,7 @@ fn statements(place: &Path) -> Result<Value, Error> {
     const ENDING: &str = "-statements.json";
     let refuse = |source| retune_store::Error::Input { path: place.to_owned(), source };
     let mut all = Map::new();
-    for entry in std::fs::read_dir(place).map_err(refuse)? {
-        let name = entry.map_err(refuse)?.file_name().to_string_lossy().into_owned();
+    for name in retune_store::plain::names(place).map_err(refuse)? {
         if let Some(item) = name.strip_suffix(ENDING) {
             all.insert(item.to_owned(), again::json(place, &name)?);
         }

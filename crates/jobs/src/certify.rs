@@ -20,6 +20,7 @@ use crate::{Error, Observer, Request};
 use measure::OtherStarts;
 use retune_model::Damper;
 use retune_store::Extent;
+use retune_store::order::is_same;
 use retune_study::{self as study, Rule, Study};
 use std::path::Path;
 
@@ -65,11 +66,6 @@ pub fn certify_file(request: &Request, watch: &dyn Observer) -> Result<Certifica
     watch.result(&where_results_are(&out)?)?;
     watch.answered(&out.join(FILE))?;
     Ok(certificate)
-}
-
-fn is_same(one: &Path, other: &Path) -> bool {
-    let [one, other] = [one, other].map(|path| path.canonicalize().ok());
-    one.is_some() && one == other
 }
 
 /// The certificate of the damper in the scene of a study, under the study's objective.

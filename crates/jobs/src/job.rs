@@ -4,6 +4,7 @@
 use crate::artefact::Kind;
 use crate::resolved::Resolved;
 use crate::{Error, Observer, resolved};
+use retune_store::plain::names;
 use retune_store::{Begin, Directory, Extent, Identity, Order, manifest};
 use retune_study::{Solver, Study, found_in, is_built_in, name_from};
 use std::path::{Path, PathBuf};
@@ -189,10 +190,7 @@ impl Request {
 /// A message with the directory of the results and their list.
 pub fn where_results_are(out: &Path) -> Result<String, Error> {
     let refuse = |source| retune_store::Error::Output { path: PathBuf::from(out), source };
-    let entries = std::fs::read_dir(out).map_err(refuse)?;
-    let mut names: Vec<String> =
-        entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    let mut names = names(out).map_err(refuse)?;
     names.retain(|name| !name.starts_with('.'));
-    names.sort();
     Ok(format!("results in {}: {}", out.display(), names.join(" ")))
 }

@@ -180,19 +180,17 @@ fn find(parts: &Path, shard: Shard) -> Result<Option<PathBuf>, Error> {
 
 /// The parts in a directory, sorted; an empty list if there is no directory.
 fn list(parts: &Path) -> Result<Vec<PathBuf>, Error> {
-    let refuse = |source| retune_store::Error::Input { path: parts.to_owned(), source };
-    let mut found = Vec::new();
-    if parts.is_dir() {
-        for entry in std::fs::read_dir(parts).map_err(refuse)? {
-            let path = entry.map_err(refuse)?.path();
-            let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-            if name.ends_with(ENDING) && !name.starts_with('.') {
-                found.push(path);
-            }
-        }
+    if !parts.is_dir() {
+        return Ok(Vec::new());
     }
-    found.sort();
-    Ok(found)
+    let refuse = |source| retune_store::Error::Input { path: parts.to_owned(), source };
+    let is_part = |name: &String| name.ends_with(ENDING) && !name.starts_with('.');
+    Ok(plain::names(parts)
+        .map_err(refuse)?
+        .iter()
+        .filter(|name| is_part(name))
+        .map(|name| parts.join(name))
+        .collect())
 }
 
 /// Reads a part and calls `visit` with each of its points and its value.

@@ -1,6 +1,6 @@
 //! The complete input of results, with every default written out: `study.json` of one study, `resolved.json` of several.
 
-use crate::Error;
+use crate::{Error, again};
 use retune_store::{Identity, json_text};
 use retune_study::{Study, read::from_text};
 use serde::{Deserialize, Serialize};
@@ -53,10 +53,8 @@ impl Resolved {
 
     /// Reads the file in a directory of results.
     pub fn read(place: &Path) -> Result<Self, Error> {
-        let path = place.join(SEVERAL);
-        let refuse = |source| retune_store::Error::Input { path: path.clone(), source };
-        let text = retune_store::plain::text(&path).map_err(refuse)?;
-        Ok(serde_json::from_str(&text).map_err(|error| refuse(error.into()))?)
+        let text = again::text(place, SEVERAL)?;
+        serde_json::from_str(&text).map_err(|error| again::broken(place, SEVERAL, error.to_string()))
     }
 
     /// The name and the study of each damper.

@@ -143,7 +143,8 @@ pub fn may_write(path: &Path, inputs: &[&Path], head: &str) -> Result<(), Error>
     }
 }
 
-fn is_same(one: &Path, other: &Path) -> bool {
+/// Whether both are the same file or directory.
+pub fn is_same(one: &Path, other: &Path) -> bool {
     let [one, other] = [one, other].map(|path| path.canonicalize().ok());
     one.is_some() && one == other
 }

@@ -1,5 +1,6 @@
 //! Opening files at names that others can guess: only plain files, never what a symbolic link points to, a pipe or a device.
 
+use crate::error::Error as Refused;
 use std::fs::{File, OpenOptions};
 use std::io::{Error, ErrorKind, Read, Result};
 use std::path::{Component, Path, PathBuf};
@@ -14,10 +15,10 @@ pub fn open(path: &Path) -> Result<File> {
 }
 
 /// Reads a plain file as text.
-pub fn text(path: &Path) -> Result<String> {
+pub fn text(path: &Path) -> std::result::Result<String, Refused> {
     let mut text = String::new();
-    open(path)?.read_to_string(&mut text)?;
-    Ok(text)
+    let read = open(path).and_then(|mut file| file.read_to_string(&mut text));
+    read.map(|_| text).map_err(|source| Refused::Input { path: path.to_owned(), source })
 }
 
 /// The path of `name`, which a file says, below `directory`: of plain names, none of them a symbolic link.
@@ -99,7 +100,8 @@ fn without_links(options: &mut OpenOptions) -> &mut OpenOptions {
     options
 }
 
-pub(crate) fn names(directory: &Path) -> Result<Vec<String>> {
+/// The names in a directory, sorted.
+pub fn names(directory: &Path) -> Result<Vec<String>> {
     let mut names = Vec::new();
     for entry in std::fs::read_dir(directory)? {
         names.extend(entry?.file_name().into_string());

@@ -18,9 +18,7 @@ const COLUMNS: [&str; 4] = ["f", "zeta", "M", "phi"];
 pub fn structure(path: &Path, which: Option<usize>) -> Result<(Wishes, String), Error> {
     let file = path.display().to_string();
     let refused = |problem: String| Error::Requirement { place: file.clone(), problem };
-    let text = retune_store::plain::text(path)
-        .map_err(|source| retune_store::Error::Input { path: path.to_owned(), source })?;
-    let modes = modes(&text).map_err(&refused)?;
+    let modes = modes(&retune_store::plain::text(path)?).map_err(&refused)?;
     let given = which.map_or_else(|| most_felt(&modes), |number| number.checked_sub(1));
     let chosen = given.filter(|i| *i < modes.len()).ok_or_else(|| Error::Requirement {
         place: "--mode".to_owned(),

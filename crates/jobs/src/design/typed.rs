@@ -92,9 +92,7 @@ impl Wishes {
     /// Reads a file of requirements.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let file = path.display().to_string();
-        let text = retune_store::plain::text(path)
-            .map_err(|source| retune_store::Error::Input { path: path.to_owned(), source })?;
-        let wishes: Self = serde_json::from_str(&text)
+        let wishes: Self = serde_json::from_str(&retune_store::plain::text(path)?)
             .map_err(|error| Error::Requirement { place: file.clone(), problem: error.to_string() })?;
         Ok(wishes.within(&file))
     }
