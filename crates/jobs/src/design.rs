@@ -19,7 +19,7 @@ pub use modes::structure;
 use requirements::Dampers;
 pub use requirements::{Driving, Requirements};
 use tmd::Formula;
-pub use typed::{Typed, Wishes};
+pub use typed::{Specification, Typed};
 
 use crate::artefact::{Content, Kind, artefact};
 use crate::job::{Done, Job, Made};

@@ -58,13 +58,12 @@ pub struct Row {
 impl Row {
     /// A row with the design that a search has found.
     pub fn of_optimum(label: &str, damper: &str, study: &Study, optimum: &Optimum) -> Self {
-        let found = optimum.found();
         Self {
             label: label.to_owned(),
             damper: damper.to_owned(),
-            found: found.damper,
+            found: optimum.damper,
             printed: None,
-            e1_max: found.e1_max,
+            e1_max: optimum.value(),
             none: study.energy_without_damper(),
             verdict: optimum.verdict(),
             reason: optimum.reason().to_owned(),

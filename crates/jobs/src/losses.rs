@@ -57,13 +57,13 @@ pub fn losses(request: &Request, watch: &dyn Observer) -> Result<Done<Losses>, E
             if let (Some(optimize), Some(start)) = (&mut alone.optimize, before) {
                 optimize.starts.push(clipped(&start, optimize));
             }
-            let found = searches.tune(&alone, &format!("restitution-{e}"))?.found().damper.design;
+            let found = searches.tune(&alone, &format!("restitution-{e}"))?.damper.design;
             designs.push((Tuning::Anew, *e, found));
             before = Some(found);
         }
         let lossless = designs[0].2; // the first restitution is 1
         watch.log("\nall restitutions at once")?;
-        let hedged = searches.tune(&study, "all")?.found().damper.design;
+        let hedged = searches.tune(&study, "all")?.damper.design;
         let paper = Design::new(|parameter| {
             Parameter::PAPER.iter().position(|known| *known == parameter).map_or(f64::NAN, |i| TABLE_2[i])
         });

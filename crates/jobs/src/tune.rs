@@ -19,7 +19,7 @@ mod valley;
 
 pub(crate) use log::OPTIMUM;
 pub use optimum::Optimum;
-pub(crate) use optimum::{Found, table2_header, table2_row};
+pub(crate) use optimum::{table2_header, table2_row};
 
 use crate::artefact::{Content, Kind, artefact};
 use crate::certify;

@@ -15,7 +15,7 @@
 mod read;
 mod record;
 
-pub use read::{Damage, Found, Known, MOST_POINTS, read};
+pub use read::{Damage, Known, MOST_POINTS, State, read};
 pub use record::{Seal, grid_text, grid_value};
 
 use crate::error::Error;

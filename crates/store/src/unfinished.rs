@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::identity::Identity;
-use crate::journal::{self, Damage, Found, Journal, Known};
+use crate::journal::{self, Damage, Journal, Known, State};
 use crate::lock::Lock;
 use crate::manifest::{Manifest, NAME};
 use crate::order::Begin;
@@ -39,10 +39,10 @@ impl Unfinished {
         let refuse = |source| Error::Input { path: path.clone(), source };
         check(&unfinished)?;
         let (of, known, damage) = match journal::read(&path, identity).map_err(refuse)? {
-            Found::Nothing => return Ok(Self::Anew(BTreeSet::new())),
-            Found::Unclear(_) if begin == Begin::Restart => return Ok(Self::Anew(BTreeSet::new())),
-            Found::Unclear(problem) => return Err(Error::Journal { path, problem }),
-            Found::Work(of, known, damage) => (of, *known, damage),
+            State::Nothing => return Ok(Self::Anew(BTreeSet::new())),
+            State::Unclear(_) if begin == Begin::Restart => return Ok(Self::Anew(BTreeSet::new())),
+            State::Unclear(problem) => return Err(Error::Journal { path, problem }),
+            State::Work(of, known, damage) => (of, *known, damage),
         };
         for part in &known.parts {
             plain::below(place, part).map_err(refuse)?;
@@ -110,7 +110,7 @@ fn damaged(path: &Path, kept: u64, Damage { head, lines }: Damage) -> String {
 /// How many results the unfinished work in a directory below holds.
 fn kept(place: &Path, identity: &Identity) -> u64 {
     match journal::read(&place.join(UNFINISHED).join(JOURNAL), identity) {
-        Ok(Found::Work(_, known, _)) => known.lines,
+        Ok(State::Work(_, known, _)) => known.lines,
         _ => 0,
     }
 }

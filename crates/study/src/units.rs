@@ -26,7 +26,7 @@ pub(super) fn in_si(text: &str) -> Result<Cow<'_, str>, Refused> {
     let _ = scan.value();
     let whole: Option<Value> = if scan.found.is_empty() { None } else { serde_json::from_str(text).ok() };
     let (mut out, mut copied) = (String::new(), 0);
-    for Found { span, path } in &scan.found {
+    for Text { span, path } in &scan.found {
         let token = &text[span.clone()];
         let Ok(typed) = serde_json::from_str::<String>(token) else { continue };
         let Some(units) = units(path, whole.as_ref()) else { continue };
@@ -140,7 +140,7 @@ impl Step {
 }
 
 /// A text that is a value: where it stands, its quotes included, and the path to it.
-struct Found {
+struct Text {
     span: std::ops::Range<usize>,
     path: Vec<Step>,
 }
@@ -150,7 +150,7 @@ struct Scan<'a> {
     text: &'a str,
     at: usize,
     path: Vec<Step>,
-    found: Vec<Found>,
+    found: Vec<Text>,
 }
 
 impl Scan<'_> {
@@ -164,7 +164,7 @@ impl Scan<'_> {
             b'[' => self.inside(b']', |_, i| Some(Step::Item(i))),
             b'"' => {
                 let span = self.word()?;
-                self.found.push(Found { span, path: self.path.clone() });
+                self.found.push(Text { span, path: self.path.clone() });
                 Some(())
             }
             _ => {

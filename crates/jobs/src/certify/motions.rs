@@ -22,7 +22,7 @@ const FOLLOWED: f64 = 0.8;
 /// A motion counts that has by this factor more than the runs from rest.
 pub(super) const NOTABLE: f64 = 1.05;
 
-pub(super) struct Found {
+pub(super) struct Coexisting {
     pub motions: Motions,
     /// None where the force has no amplitude.
     pub margin: Option<Margin>,
@@ -53,7 +53,7 @@ pub(super) fn coexisting(
     goal: &Goal,
     settings: &Settings,
     needed: Margins,
-) -> Result<Option<Found>, Unusable> {
+) -> Result<Option<Coexisting>, Unusable> {
     let strikes = scene.damper.is_some_and(|damper| damper.contact.is_some());
     if !strikes || scene.forcing.is_transient() {
         return Ok(None);
@@ -105,7 +105,7 @@ pub(super) fn coexisting(
     k1_of.sort_by(f64::total_cmp);
     k1_of.dedup();
     let most = all.into_iter().max_by(|a, b| a.ratio().total_cmp(&b.ratio()));
-    Ok(most.map(|most| Found { motions: Motions { k1_of, ..most }, margin, reached }))
+    Ok(most.map(|most| Coexisting { motions: Motions { k1_of, ..most }, margin, reached }))
 }
 
 /// The places of all terms. Of a range of stiffnesses, its ends and that of the worst run.

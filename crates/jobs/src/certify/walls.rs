@@ -77,7 +77,7 @@ fn with(mut scene: Scene, parameter: Parameter, value: f64) -> Result<Scene, Unu
 }
 
 /// Growth of the value above which the design should be tuned for all restitutions.
-const MUCH: f64 = 0.1;
+const GROWTH: f64 = 0.1;
 
 /// A design between walls that lose more or less, and between softer and stiffer ones.
 #[derive(Clone, Debug, Serialize)]
@@ -196,7 +196,7 @@ impl Walls {
             words += &format!("; {}, the stiffness of both walls", joined(&each.collect::<Vec<_>>(), ", "));
         }
         words += &self.reservations();
-        if self.worst().is_some_and(|worst| worst.found.value > (1.0 + MUCH) * own.value) {
+        if self.worst().is_some_and(|worst| worst.found.value > (1.0 + GROWTH) * own.value) {
             let law = match Parameter::Restitution.of(&study.scene) {
                 Some(_) => "",
                 None => "give `contact.loss` a restitution alone and ",

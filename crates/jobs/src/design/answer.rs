@@ -3,7 +3,7 @@
 use super::Formula;
 use super::candidate::{Candidate, What};
 use super::comparison::Comparison;
-use super::requirements::{Dampers, Requirements, Wish};
+use super::requirements::{Constraint, Dampers, Requirements};
 use super::words::{alike, frequency, legible, parameters, percent, sized, tuning};
 use super::words::{broken_at_spaces, limit};
 use retune_model::Measure;
@@ -32,10 +32,13 @@ fn next(compared: &Comparison) -> String {
 /// The rows of the comparison: a quantity, what is allowed of it, and the value and the place of each candidate.
 pub(super) fn rows(requirements: &Requirements, compared: &Comparison) -> Vec<Vec<String>> {
     let row = |measure: Measure| {
-        let wish = Wish::Of(Limit::Of(measure));
-        let allowed = requirements.allowed(wish);
-        let allowed =
-            if allowed.is_nan() { String::new() } else { format!(" <= {}", sized(allowed, wish.unit())) };
+        let constraint = Constraint::Of(Limit::Of(measure));
+        let allowed = requirements.allowed(constraint);
+        let allowed = if allowed.is_nan() {
+            String::new()
+        } else {
+            format!(" <= {}", sized(allowed, constraint.unit()))
+        };
         let first = format!("{}{allowed}", measure.name().replace('_', " "));
         let values: Vec<f64> = compared.all().map(|of| of.value(measure)).collect();
         let cell = |(of, value): (&Candidate, String)| {
@@ -251,7 +254,7 @@ fn costs(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
             (Some(own), None) if own.feasible => words.push("holds no SSVI NES back".to_owned()),
             _ => {}
         }
-        let name = limit(requirements, of.wish);
+        let name = limit(requirements, of.constraint);
         (!words.is_empty()).then(|| format!("The limit {name} {}.", words.join("; ")))
     };
     compared.costs.iter().filter_map(line).collect()

@@ -1,7 +1,7 @@
 //! The comparison: no damper, the best TMD, an SSVI NES, what each limit costs, and how sure the recommended one is.
 
 use super::candidate::{Candidate, What};
-use super::requirements::{Dampers, Requirements, Wish};
+use super::requirements::{Constraint, Dampers, Requirements};
 use super::words::question;
 use super::words::{parameters, sized};
 use super::{Formula, ssvi, tmd};
@@ -57,7 +57,7 @@ pub struct Comparison {
 #[derive(Debug)]
 pub struct Cost {
     /// The limit.
-    pub wish: Wish,
+    pub constraint: Constraint,
     /// The best TMD without it.
     pub tmd: Candidate,
     /// The best SSVI NES without it, where the limit holds that under all limits back.
@@ -119,7 +119,7 @@ fn by(requirements: &Requirements, study: &Study, formula: Formula) -> Result<(F
 /// strikes nothing is a TMD. Each is measured when it is asked for, which takes most of the time where its motions are irregular.
 fn striking<'a>(
     study: &'a Study,
-    found: &'a ssvi::Found,
+    found: &'a ssvi::Ends,
 ) -> impl Iterator<Item = Result<(f64, Candidate), Error>> + 'a {
     let measured = |(value, end): &'a (f64, Vec<f64>)| -> Result<Option<(f64, Candidate)>, Error> {
         let place = |parameter: Parameter| Parameter::PAPER.iter().position(|own| *own == parameter);
@@ -257,28 +257,28 @@ fn costs(
     journal: &Journal,
     watch: &dyn Observer,
 ) -> Result<Vec<Cost>, Error> {
-    let cost = |wish: Wish| {
-        let free = requirements.without(wish);
+    let cost = |constraint: Constraint| {
+        let free = requirements.without(constraint);
         let study = free.tmd()?;
         let formulas = Formula::all(&free, &study.scene.primary);
         let free_tmd = tmd_of(&study, tmd::best(&study, &formulas)?)?;
-        let binds = match wish {
-            Wish::Of(limit) => ssvi.binding.iter().any(|(other, _)| *other == limit),
-            Wish::K2 => ssvi.k2() > 0.99 * requirements.allowed(wish),
+        let binds = match constraint {
+            Constraint::Of(limit) => ssvi.binding.iter().any(|(other, _)| *other == limit),
+            Constraint::K2 => ssvi.k2() > 0.99 * requirements.allowed(constraint),
         };
         let free_ssvi = if ssvi.what == What::Ssvi && binds {
             let study = free.ssvi()?;
             let start = Parameter::PAPER
                 .map(|parameter| ssvi.damper().map_or(f64::NAN, |damper| parameter.get(&damper)));
-            let stage = format!("ssvi without {}", wish.name());
+            let stage = format!("ssvi without {}", constraint.name());
             let found = ssvi::best(&study, tmd, &[start.to_vec()], (journal, &stage), watch)?;
             striking(&study, &found).next().transpose()?.map(|(_, candidate)| candidate)
         } else {
             None
         };
-        Ok(Cost { wish, tmd: free_tmd, ssvi: free_ssvi })
+        Ok(Cost { constraint, tmd: free_tmd, ssvi: free_ssvi })
     };
-    requirements.wishes().into_iter().map(cost).collect()
+    requirements.constraints().into_iter().map(cost).collect()
 }
 
 /// The goal of a damper with k1 off by minus and plus a share.
@@ -340,7 +340,7 @@ impl Serialize for Comparison {
             .iter()
             .map(|cost| {
                 (
-                    cost.wish.name().to_owned(),
+                    cost.constraint.name().to_owned(),
                     json!({ "TMD_without": cost.tmd, "SSVI_NES_without": cost.ssvi }),
                 )
             })

@@ -1,6 +1,6 @@
 //! A table of modes, of which one becomes the structure of a design.
 
-use super::typed::Wishes;
+use super::typed::Specification;
 use crate::Error;
 use retune_model::{Mode, NonNegative, Positive, left_out, most_felt};
 use retune_study::{frequency, rounded};
@@ -15,7 +15,7 @@ const COLUMNS: [&str; 4] = ["f", "zeta", "M", "phi"];
 ///
 /// # Errors
 /// The table cannot be read, or has no such mode.
-pub fn structure(path: &Path, which: Option<usize>) -> Result<(Wishes, String), Error> {
+pub fn structure(path: &Path, which: Option<usize>) -> Result<(Specification, String), Error> {
     let file = path.display().to_string();
     let refused = |problem: String| Error::Requirement { place: file.clone(), problem };
     let modes = modes(&retune_store::plain::text(path)?).map_err(&refused)?;
@@ -34,7 +34,8 @@ pub fn structure(path: &Path, which: Option<usize>) -> Result<(Wishes, String), 
     })?;
     let [m1, k1, c1] = [primary.mass.get(), primary.stiffness.get(), primary.damping.get()];
     let typed = |value: f64| Some(value.to_string().into());
-    let wishes = Wishes { m1: typed(m1), k1: typed(k1), c1: typed(c1), ..Wishes::default() };
+    let specification =
+        Specification { m1: typed(m1), k1: typed(k1), c1: typed(c1), ..Specification::default() };
     let words = format!(
         "mode {} of {}, {}, is at the damper a structure of m1 = {} kg, k1 = {} N/m and c1 = {} N·s/m; at its frequency the modes that \
          are left out add {} % to its displacement by a force there",
@@ -46,7 +47,7 @@ pub fn structure(path: &Path, which: Option<usize>) -> Result<(Wishes, String), 
         rounded(c1, 6),
         rounded(100.0 * left_out(&modes, chosen), 2)
     );
-    Ok((wishes.within(&file), words))
+    Ok((specification.within(&file), words))
 }
 
 /// The modes of a table, CSV with a header.

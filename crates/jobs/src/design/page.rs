@@ -3,7 +3,7 @@
 use super::answer::{build, findings, rows};
 use super::candidate::{Candidate, What};
 use super::comparison::Comparison;
-use super::requirements::{Requirements, Wish};
+use super::requirements::{Constraint, Requirements};
 use super::words::{asked, parameters, sized, tuning};
 use crate::pages::made_by;
 use crate::tune::band::at;
@@ -35,11 +35,14 @@ pub(super) fn page(requirements: &Requirements, compared: &Comparison) -> Docume
         .costs
         .iter()
         .map(|cost| {
-            let allowed = sized(requirements.allowed(cost.wish), cost.wish.unit());
+            let allowed = sized(requirements.allowed(cost.constraint), cost.constraint.unit());
             let value =
                 |of: Option<&Candidate>| of.map_or("-".to_owned(), |of| sized(of.goal, compared.goal.unit()));
             let own = [Some(&compared.tmd), Some(&cost.tmd), compared.ssvi.as_ref(), cost.ssvi.as_ref()];
-            [format!("{} at most {allowed}", cost.wish.name())].into_iter().chain(own.map(value)).collect()
+            [format!("{} at most {allowed}", cost.constraint.name())]
+                .into_iter()
+                .chain(own.map(value))
+                .collect()
         })
         .collect();
     let mut compare = vec![
@@ -164,7 +167,7 @@ fn curves(requirements: &Requirements, compared: &Comparison) -> Drawing {
         let of_walls = measure.is_of_walls();
         let y =
             if of_walls { Axis::from_zero(label, scaled) } else { Axis::around(label, Scale::Log, scaled) };
-        let allowed = requirements.allowed(Wish::Of(Limit::Of(measure)));
+        let allowed = requirements.allowed(Constraint::Of(Limit::Of(measure)));
         let mut layers = Vec::new();
         if allowed.is_finite() {
             layers.push(Layer::Band {

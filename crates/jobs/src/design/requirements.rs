@@ -96,14 +96,14 @@ pub struct Wall {
 
 /// A limit that is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wish {
+pub enum Constraint {
     /// On a quantity.
     Of(Limit),
     /// On the stiffness of the damper's spring.
     K2,
 }
 
-impl Wish {
+impl Constraint {
     /// Its name in tables.
     pub const fn name(self) -> &'static str {
         match self {
@@ -131,25 +131,25 @@ const LEAST_DAMPING: f64 = 0.01;
 
 impl Requirements {
     /// The limits that are asked for, in the order of the catalogue.
-    pub fn wishes(&self) -> Vec<Wish> {
-        self.limits.set().map(Wish::Of).chain(self.k2_max.map(|_| Wish::K2)).collect()
+    pub fn constraints(&self) -> Vec<Constraint> {
+        self.limits.set().map(Constraint::Of).chain(self.k2_max.map(|_| Constraint::K2)).collect()
     }
 
     /// The largest value that a limit allows, in its SI unit; NaN where there is no such limit.
-    pub fn allowed(&self, wish: Wish) -> f64 {
-        match wish {
-            Wish::Of(limit) => self.limits.get(limit).unwrap_or(f64::NAN),
-            Wish::K2 => self.k2_max.unwrap_or(f64::NAN),
+    pub fn allowed(&self, constraint: Constraint) -> f64 {
+        match constraint {
+            Constraint::Of(limit) => self.limits.get(limit).unwrap_or(f64::NAN),
+            Constraint::K2 => self.k2_max.unwrap_or(f64::NAN),
         }
     }
 
     /// The same without one limit.
     #[must_use]
-    pub fn without(&self, wish: Wish) -> Self {
+    pub fn without(&self, constraint: Constraint) -> Self {
         let mut free = self.clone();
-        match wish {
-            Wish::K2 => free.k2_max = None,
-            Wish::Of(limit) => {
+        match constraint {
+            Constraint::K2 => free.k2_max = None,
+            Constraint::Of(limit) => {
                 let kept = self.limits.set().filter(|other| *other != limit);
                 free.limits = kept.fold(Limits::default(), |limits, other| {
                     let most = self.limits.get(other).and_then(|most| Positive::new(most).ok());

@@ -48,7 +48,7 @@ pub(super) fn table(compared: &Comparison) -> Table {
     compared.all().for_each(|of| push("all".to_owned(), of));
     for cost in &compared.costs {
         for of in std::iter::once(&cost.tmd).chain(&cost.ssvi) {
-            push(format!("no {}", cost.wish.name()), of);
+            push(format!("no {}", cost.constraint.name()), of);
         }
     }
     table

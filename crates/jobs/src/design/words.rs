@@ -1,7 +1,7 @@
 //! Numbers of a design as a person reads them.
 
 use super::candidate::Candidate;
-use super::requirements::{Driving, Requirements, Wish};
+use super::requirements::{Constraint, Driving, Requirements};
 use retune_model::{Measure, Parameter, unit};
 use retune_study::rounded;
 use std::f64::consts::TAU;
@@ -116,7 +116,7 @@ pub(super) fn asked(requirements: &Requirements) -> Vec<String> {
     let [from, to] = requirements.band.map(|end| frequency(end, unit));
     let from = from.trim_end_matches(unit).trim_end();
     let limits: Vec<String> =
-        requirements.wishes().into_iter().map(|wish| limit(requirements, wish)).collect();
+        requirements.constraints().into_iter().map(|constraint| limit(requirements, constraint)).collect();
     let limits = if limits.is_empty() { String::new() } else { format!(", {}", limits.join(", ")) };
     vec![
         format!(
@@ -134,8 +134,8 @@ pub(super) fn asked(requirements: &Requirements) -> Vec<String> {
     ]
 }
 
-pub(super) fn limit(requirements: &Requirements, wish: Wish) -> String {
-    format!("{} at most {}", wish.name(), sized(requirements.allowed(wish), wish.unit()))
+pub(super) fn limit(requirements: &Requirements, constraint: Constraint) -> String {
+    format!("{} at most {}", constraint.name(), sized(requirements.allowed(constraint), constraint.unit()))
 }
 
 /// Lines of at most 80 columns that are broken at spaces alone, so that no name of a file is.

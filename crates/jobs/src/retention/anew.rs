@@ -5,7 +5,7 @@ use crate::designs::Row;
 use crate::fronts::SAME;
 use crate::pages::over as over_band;
 use crate::searches::Searches;
-use crate::tune::{Found, Optimum};
+use crate::tune::Optimum;
 use crate::{Error, Observer};
 use retune_model::{Design, Parameter};
 use retune_study::{PaperStudy, Setting, SpringBounds, Study, Table2, short};
@@ -34,7 +34,7 @@ pub(super) fn tune(
         ))?;
         let optimum = searched(study.clone(), said.samples, &format!("k1-{k1}"), searches, watch)?;
         rows.push((k1, Row::of_optimum(&label(k1), name, &study, &optimum)));
-        Ok(optimum.found().damper.design_of(study.varied()))
+        Ok(optimum.damper.design_of(study.varied()))
     };
     let first = at(nominal, None)?;
     let mut designs = vec![(nominal, first)];
@@ -63,7 +63,7 @@ pub(super) fn tune(
         watch.log(&format!("\n{name} for all k1, {}", over_band(&study)))?;
         let optimum = searched(study.clone(), said.samples, Tuning::Robust.name(), searches, watch)?;
         rows.push(Row::of_optimum(Tuning::Robust.name(), name, &study, &optimum));
-        kept.push(Kept { tuning: Tuning::Robust, at: optimum.found().damper.design_of(study.varied()) });
+        kept.push(Kept { tuning: Tuning::Robust, at: optimum.damper.design_of(study.varied()) });
     }
     let tuned =
         Tuned { name: name.clone(), study: study.clone(), samples: said.samples, kept, anew: designs };
@@ -81,7 +81,7 @@ fn searched(
 ) -> Result<Optimum, Error> {
     let optimum = searches.tune(&study, place)?;
     watch.log(&optimum.report())?;
-    let Found { damper, e1_max } = optimum.found();
+    let (damper, e1_max) = (optimum.damper, optimum.value());
     let own = study.scene.primary.stiffness.get();
     let rises = |again: f64| again > (1.0 + SAME) * e1_max;
     let at = damper.design_of(study.varied());

@@ -23,8 +23,9 @@ use serde::{Serialize, Serializer};
 #[derive(Clone, Debug, Serialize)]
 pub struct Optimum {
     pub(crate) damper_type: &'static str,
+    /// The best design.
     #[serde(flatten)]
-    pub(crate) damper: TunedDamper,
+    pub damper: TunedDamper,
     #[serde(flatten)]
     value: Amount,
     /// The meaning of that value, if it is not E1max in a window at the scene's omega.
@@ -81,17 +82,6 @@ pub(super) struct Searched<'a> {
     pub basins: Option<Basins>,
     pub passed_over: Vec<PassedOver>,
     pub valleys: Vec<Valley>,
-}
-
-/// A damper that was found, and its value by the objective.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Found {
-    /// The damper.
-    #[serde(flatten)]
-    pub damper: TunedDamper,
-    /// E1max, J, or the value of the study's quantity.
-    #[serde(rename = "E1max")]
-    pub e1_max: f64,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -182,9 +172,9 @@ impl Optimum {
         })
     }
 
-    /// The best design.
-    pub fn found(&self) -> Found {
-        Found { damper: self.damper, e1_max: self.value.value }
+    /// Its value by the objective of its study, in the unit of the quantity.
+    pub fn value(&self) -> f64 {
+        self.value.value
     }
 
     /// The verdict of its certificate.

@@ -50,7 +50,7 @@ impl Damage {
 
 /// The state of a journal's file.
 #[derive(Debug)]
-pub enum Found {
+pub enum State {
     /// Nothing, not even a first line.
     Nothing,
     /// A file that cannot be attributed to a work, and why.
@@ -60,14 +60,14 @@ pub enum Found {
 }
 
 /// Reads a journal. Where its first line is damaged, its records tell whether it is of the work `ours`.
-pub fn read(path: &Path, ours: &Identity) -> std::io::Result<Found> {
+pub fn read(path: &Path, ours: &Identity) -> std::io::Result<State> {
     let mut lines = BufReader::new(match plain::open(path) {
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Found::Nothing),
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(State::Nothing),
         other => other?,
     });
     let mut line = Vec::new();
     if !next(&mut lines, &mut line)? {
-        return Ok(Found::Nothing);
+        return Ok(State::Nothing);
     }
     let head = head(&line);
     let of = head.clone().unwrap_or_else(|| ours.clone());
@@ -84,18 +84,18 @@ pub fn read(path: &Path, ours: &Identity) -> std::io::Result<Found> {
         }
         match self::head(&line) {
             Some(other) if damage.head || other != of => {
-                return Ok(Found::Unclear("it holds the work of two studies, one after the other"));
+                return Ok(State::Unclear("it holds the work of two studies, one after the other"));
             }
             Some(_) => {}
             None => damage.lines += 1,
         }
     }
     if damage.head && known.lines == 0 && known.parts.is_empty() {
-        return Ok(Found::Unclear(
+        return Ok(State::Unclear(
             "its first line, which says whose work it is, is damaged or of another version, and no record in it is of this study",
         ));
     }
-    Ok(Found::Work(of, Box::new(known), damage))
+    Ok(State::Work(of, Box::new(known), damage))
 }
 
 /// Replaces a damaged journal: a first line, and every complete record. The old file stays until the new one is complete.
