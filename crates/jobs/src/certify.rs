@@ -13,8 +13,7 @@ pub(crate) use walls::Walls;
 
 use crate::again::{Made, json};
 use crate::artefact::{Content, Kind, artefact};
-use crate::job::where_results_are;
-use crate::job::{Job, open};
+use crate::job::{Job, open, where_results_are};
 use crate::resolved::{self, identity_of};
 use crate::{Error, Observer, Request};
 use measure::OtherStarts;

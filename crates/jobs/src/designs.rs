@@ -1,13 +1,11 @@
 //! Tables of designs in the form of the paper's Table 2, as `table2`, `retention` and `design` make them.
 
-use crate::Error;
 use crate::again::Source;
-use crate::columns;
 use crate::needs::{Largest, TOLD};
 use crate::resolved::Resolved;
 use crate::summary::TunedDamper;
-use crate::tune::objective;
-use crate::tune::{Optimum, table2_header, table2_row};
+use crate::tune::{Optimum, objective, table2_header, table2_row};
+use crate::{Error, columns};
 use retune_model::{Measure, Parameter};
 use retune_report::cells;
 use retune_report::table::Table;

@@ -6,8 +6,7 @@
 use crate::rows::{Rows, compute};
 use crate::{Error, Observer, job};
 use retune_store::identity::{Identity, hexadecimal};
-use retune_store::journal::Seal;
-use retune_store::journal::{grid_text, grid_value};
+use retune_store::journal::{Seal, grid_text, grid_value};
 use retune_store::{Begin, Directory, Extent, Order, plain};
 use retune_study::counted;
 use sha2::{Digest, Sha256};

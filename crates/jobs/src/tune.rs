@@ -22,11 +22,9 @@ pub use optimum::Optimum;
 pub(crate) use optimum::{table2_header, table2_row};
 
 use crate::artefact::{Content, Kind, artefact};
-use crate::certify;
 use crate::job::{Done, Job, Made};
-use crate::resolved;
 use crate::summary::Summary;
-use crate::{Error, Observer, Request};
+use crate::{Error, Observer, Request, certify, resolved};
 use global::Basins;
 use optimum::Searched;
 use report::Findings;

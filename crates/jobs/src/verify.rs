@@ -12,9 +12,9 @@ use crate::{
     table2, tune,
 };
 use report::Report;
+use retune_store::UNFINISHED;
 use retune_store::identity::{Identity, VERSION, sha256};
-use retune_store::manifest::Manifest;
-use retune_store::{UNFINISHED, manifest};
+use retune_store::manifest::{self, Manifest};
 use retune_study::counted;
 use std::path::{Path, PathBuf};
 

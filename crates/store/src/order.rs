@@ -7,8 +7,7 @@
 use crate::error::Error;
 use crate::identity::Identity;
 use crate::manifest::{MadeBy, Manifest, NAME};
-use crate::plain;
-use crate::plain::names;
+use crate::plain::{self, names};
 use std::path::{Path, PathBuf};
 
 /// The treatment of unfinished work that is found.

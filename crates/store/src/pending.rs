@@ -1,7 +1,6 @@
 //! Files that get their name only when they are complete: written under a temporary name, then renamed.
 
-use super::plain;
-use super::plain::names;
+use super::plain::{self, names};
 use crate::error::Error;
 use std::fs::File;
 use std::io::{BufWriter, Write};

@@ -1,8 +1,7 @@
 //! The study behind Table 2: each damper's own study, beside the design the paper gives for it.
 
 use super::built_in::{PLACE, read_plan_text, text};
-use super::file::Kind;
-use super::file::{StudyError, expect, parse};
+use super::file::{Kind, StudyError, expect, parse};
 use super::format::Study;
 use super::objective::{MOST_SAMPLES, check_quantity};
 use super::read::{from_text, named};

@@ -1,8 +1,7 @@
 //! A window that follows the structure: `"window": "settled"`.
 
-use crate::Rule;
 use crate::format::Span;
-use crate::records;
+use crate::{Rule, records};
 use retune_model::{NonNegative, Positive, Scene};
 use serde::Deserialize;
 use serde_json::Value;

@@ -2,8 +2,7 @@
 
 use super::candidate::{Candidate, What};
 use super::requirements::{Constraint, Dampers, Requirements};
-use super::words::question;
-use super::words::{parameters, sized};
+use super::words::{parameters, question, sized};
 use super::{Formula, ssvi, tmd};
 use crate::certify::{Certificate, Verdict, judge};
 use crate::{Error, Observer};

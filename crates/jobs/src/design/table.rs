@@ -2,10 +2,9 @@
 
 use super::candidate::{Candidate, What};
 use super::comparison::Comparison;
-use crate::Error;
 use crate::again::{Row, Source};
-use crate::columns;
 use crate::resolved::Resolved;
+use crate::{Error, columns};
 use retune_model::{Measure, Parameter, Scene};
 use retune_report::cells;
 use retune_report::table::{Cell, Table};

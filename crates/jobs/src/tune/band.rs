@@ -11,8 +11,7 @@ use retune_report::colour::{BLACK, BLUE, VERMILION};
 use retune_report::table::{Cell, Column, Table};
 use retune_report::{Axis, Chart, Dash, Key, Layer, Sheet, Stroke, svg};
 use retune_store::Directory;
-use retune_study::Study;
-use retune_study::short;
+use retune_study::{Study, short};
 
 /// Number of frequencies of the curves if each is a closed form.
 const FINE: usize = 601;

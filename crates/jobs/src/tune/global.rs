@@ -1,12 +1,10 @@
 //! The global search of a study, and the basins that it and the refinements found.
 
-use super::log::BASINS;
-use super::log::worth;
+use super::log::{BASINS, worth};
 use super::objective::{coarse, kept, searched};
 use super::refine::{Refined, Run, columns};
-use crate::Error;
-use crate::Observer;
 use crate::amount::{Amount, measured};
+use crate::{Error, Observer};
 use rayon::prelude::*;
 use retune_model::{Measure, Parameter, PerVariable};
 use retune_optim::{
@@ -15,8 +13,7 @@ use retune_optim::{
 use retune_report::cells;
 use retune_report::table::{Cell, Column, Table};
 use retune_store::{Directory, Journal};
-use retune_study::{Search, Study};
-use retune_study::{counted, joined, short};
+use retune_study::{Search, Study, counted, joined, short};
 use serde::Serialize;
 use std::time::Instant;
 

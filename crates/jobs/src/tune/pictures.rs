@@ -3,9 +3,8 @@
 use super::log::worth;
 use super::refine::Refined;
 use super::surf::Surf;
-use crate::Error;
-use crate::amount;
 use crate::summary::MadeBy;
+use crate::{Error, amount};
 use retune_optim::{Parameter, value_of};
 use retune_report::colour::BLUE;
 use retune_report::{Axis, Chart, Layer, Nodes, Place, Scale, Sheet, Stroke, scale_for, svg};

@@ -1,12 +1,9 @@
 //! The fine stage: `fminsearch` from each start, with its log.
 
-use super::log;
-use super::log::LOG;
-use super::log::STARTS;
+use super::log::{self, LOG, STARTS};
 use super::objective::{kept, searched};
-use crate::Error;
-use crate::Observer;
 use crate::summary::MadeBy;
+use crate::{Error, Observer};
 use retune_model::Parameter;
 use retune_optim::{DesignObjective, Minimum, Row, minimize};
 use retune_store::{Directory, Journal, Pending};

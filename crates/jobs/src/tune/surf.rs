@@ -1,18 +1,15 @@
 //! The coarse stage: the objective on a grid.
 
-use super::log::GRID;
-use super::log::worth;
+use super::log::{GRID, worth};
 use super::objective::{coarse, kept, searched};
 use super::refine::columns;
-use crate::Error;
-use crate::Observer;
 use crate::rows::{Rows, compute};
+use crate::{Error, Observer};
 use retune_model::Measure;
 use retune_optim::{Counts, DesignObjective, Failures, Grid, Parameter, best_separated_above};
 use retune_report::table::{Cell, line};
 use retune_store::Directory;
-use retune_study::{Coarse, Search, Study};
-use retune_study::{counted, joined, short};
+use retune_study::{Coarse, Search, Study, counted, joined, short};
 use std::time::Instant;
 
 // A journal must hold every grid that a study may have.

@@ -1,7 +1,6 @@
 //! Reading a journal, damaged or not: complete records are kept, damaged ones counted.
 
-use super::record::Seal;
-use super::record::{Key, bits, grid_value};
+use super::record::{Key, Seal, bits, grid_value};
 use crate::error::Error;
 use crate::identity::Identity;
 use crate::pending::Pending;

@@ -1,8 +1,7 @@
 //! The answer of a search in words: what to build, what it does, how sure that is, and what to do next. Lines fit 80 columns.
 
 use super::notes::{self, Goal, LimitNote};
-use super::{DescentNote, RunNote};
-use super::{FailureNote, Optimum, Valley, stop_words};
+use super::{DescentNote, FailureNote, Optimum, RunNote, Valley, stop_words};
 use crate::amount::Amount;
 use crate::certify::Verdict;
 use crate::needs::Needs;
