@@ -17,7 +17,7 @@ mod words;
 use comparison::Comparison;
 pub use modes::structure;
 use requirements::Dampers;
-pub use requirements::{Driving, Requirements};
+pub use requirements::Requirements;
 use tmd::Formula;
 pub use typed::{Specification, Typed};
 

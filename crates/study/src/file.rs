@@ -157,12 +157,6 @@ impl Kind {
                 .find(|kind| json.get(kind.field()).is_some()),
         }
     }
-
-    /// Whether it is the default, which files need not say.
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
-    pub(super) fn is_study(&self) -> bool {
-        *self == Self::Study
-    }
 }
 
 /// Describes the error at the field `path` (`scene.damper.k2`), if parsing reached a field.

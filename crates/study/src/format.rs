@@ -20,7 +20,7 @@ pub struct Study {
     #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
     pub schema: Option<String>,
     /// "study". A file without it is recognised by its other fields.
-    #[serde(default, skip_serializing_if = "Kind::is_study")]
+    #[serde(default, skip_serializing_if = "is_default")]
     #[schemars(extend("const" = "study"))]
     pub kind: Kind,
     /// The version of Retune that wrote this file, if it was written by Retune. Ignored.
@@ -41,7 +41,7 @@ pub struct Study {
     #[serde(default)]
     pub optimize: Option<Optimize>,
     /// The margins that a robust design has.
-    #[serde(default, skip_serializing_if = "Margins::is_default")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub certificate: Margins,
 }
 
@@ -64,10 +64,9 @@ impl Default for Margins {
     }
 }
 
-impl Margins {
-    fn is_default(&self) -> bool {
-        *self == Self::default()
-    }
+/// Whether a value is the default, which files need not say.
+pub fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 /// The time window in which maxima are evaluated. Every run starts at t = 0.
@@ -126,7 +125,7 @@ pub struct Optimize {
     #[serde(default)]
     pub surf: Option<PerVariable<GridAxis>>,
     /// How exact the grid and the global search are, which only say where refinements start. Default: as exact as these are.
-    #[serde(default, skip_serializing_if = "Coarse::is_default")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub coarse: Coarse,
     /// A global search in addition to the grid. Default: none; `{}` selects it with its default settings.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -158,10 +157,6 @@ pub struct Coarse {
 }
 
 impl Coarse {
-    fn is_default(&self) -> bool {
-        *self == Self::default()
-    }
-
     /// The value up to which a grid is computed, in the unit of the quantity; infinite if all of it is.
     pub fn up_to(&self) -> f64 {
         self.most.unwrap_or(f64::INFINITY)

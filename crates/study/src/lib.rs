@@ -43,7 +43,7 @@ mod words;
 
 pub use built_in::is_built_in;
 pub use file::{Kind, StudyError, kind_of};
-pub use format::{Coarse, GridAxis, Margins, Optimize, Refine, Solver, Span, Study, schema};
+pub use format::{Coarse, GridAxis, Margins, Optimize, Refine, Solver, Span, Study, is_default, schema};
 pub use fronts::{Fronts, FrontsPlan, Sweep, bounded, read_fronts};
 pub use global::GlobalSearch;
 pub use read::{found_in, read, read_paper};

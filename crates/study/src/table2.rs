@@ -2,7 +2,7 @@
 
 use super::built_in::{PLACE, read_plan_text, text};
 use super::file::{Kind, StudyError, expect, parse};
-use super::format::Study;
+use super::format::{Study, is_default};
 use super::objective::{MOST_SAMPLES, check_quantity};
 use super::read::{from_text, named};
 use super::rule::Rule;
@@ -26,7 +26,7 @@ pub struct Table2 {
     #[schemars(length(min = 1))]
     pub rows: Vec<PaperRow>,
     /// For `retune retention`: the bounds on k2 where a damper is tuned anew for another k1.
-    #[serde(default, skip_serializing_if = "SpringBounds::is_default")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub k2_bounds: SpringBounds,
     /// For `retune retention`: number of band samples on which the designs are re-evaluated, so that they are compared on the same
     /// frequencies. Default: those of each study.
@@ -44,13 +44,6 @@ pub enum SpringBounds {
     Scaled,
     /// They stay as they are.
     Fixed,
-}
-
-impl SpringBounds {
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
-    fn is_default(&self) -> bool {
-        *self == Self::default()
-    }
 }
 
 fn kind() -> Kind {

@@ -116,16 +116,11 @@ pub struct Outcome {
     #[serde(skip_serializing_if = "Option::is_none")]
     keeps_limits: Option<bool>,
     /// Runs that should have settled and did not: their value is that of the window.
-    #[serde(skip_serializing_if = "is_zero")]
+    #[serde(skip_serializing_if = "retune_study::is_default")]
     unsettled: u64,
     /// Why there is no value.
     #[serde(skip_serializing_if = "Option::is_none")]
     reason: Option<String>,
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
-fn is_zero(count: &u64) -> bool {
-    *count == 0
 }
 
 impl Outcome {

@@ -1,6 +1,6 @@
 //! From requirements as given to requirements in SI units: what is missing, contradicts itself or cannot be is refused with what to give.
 
-use super::requirements::{Dampers, Driving, Requirements, Wall};
+use super::requirements::{Dampers, Requirements, Wall};
 use super::typed::{Specification, Typed};
 use crate::Error;
 use retune_model::{Measure, Parameter, Positive, Unit, unit};
@@ -164,29 +164,22 @@ fn damping(specification: &Specification, critical: f64) -> Result<f64, Error> {
     Ok(c1)
 }
 
-fn driving(specification: &Specification) -> Result<Driving, Error> {
+/// What moves the structure.
+fn driving(specification: &Specification) -> Result<(Parameter, f64), Error> {
     let all = [
-        ("force", &specification.force, Parameter::P.units()),
-        ("imbalance", &specification.imbalance, Parameter::Imbalance.units()),
-        ("base", &specification.base, Parameter::Base.units()),
-        ("base_acceleration", &specification.base_acceleration, Parameter::BaseAcceleration.units()),
+        ("force", &specification.force, Parameter::P),
+        ("imbalance", &specification.imbalance, Parameter::Imbalance),
+        ("base", &specification.base, Parameter::Base),
+        ("base_acceleration", &specification.base_acceleration, Parameter::BaseAcceleration),
     ];
     let given: Vec<_> =
-        all.iter().filter_map(|(name, typed, units)| Some((*name, typed.as_ref()?, *units))).collect();
+        all.iter().filter_map(|(name, typed, of)| Some((*name, typed.as_ref()?, *of))).collect();
     match given.as_slice() {
         [] => Err(missing(
             "--force",
             "what moves the structure: --force 280N, --imbalance 0.02kg·m, --base 1mm or --base-acceleration 0.1g",
         )),
-        [(name, typed, units)] => {
-            let value = positive(typed, name, units)?;
-            Ok(match *name {
-                "force" => Driving::Force(value),
-                "imbalance" => Driving::Imbalance(value),
-                "base" => Driving::Base(value),
-                _ => Driving::BaseAcceleration(value),
-            })
-        }
+        [(name, typed, of)] => Ok((*of, positive(typed, name, of.units())?)),
         [(first, ..), (name, typed, _), ..] => {
             Err(typed
                 .refused(name, format!("{} is given too: leave one of them out", first.replace('_', "-"))))

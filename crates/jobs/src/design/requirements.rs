@@ -4,30 +4,35 @@
 //! structure without a damper.
 
 use crate::Error;
-use retune_model::{Bare, Forcing, Measure, NonNegative, Positive, Primary, Source, Surfaces, den_hartog};
+use retune_model::{
+    Bare, Forcing, Measure, NonNegative, Parameter, Positive, Primary, Source, Surfaces, den_hartog,
+};
 use retune_optim::{Limit, Limits};
 use retune_study::Study;
 use retune_study::read::from_text;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 
 /// What is asked of a design. SI units.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-#[expect(missing_docs, reason = "their names say it")]
 pub struct Requirements {
+    /// Mass of the structure, kg.
     pub m1: f64,
     /// Its stiffness, N/m.
     pub k1: f64,
     /// Its damping, N·s/m.
     pub c1: f64,
-    #[serde(flatten)]
-    pub source: Driving,
+    /// What moves it: a parameter of a forcing, and its amplitude in the SI unit.
+    #[serde(flatten, serialize_with = "as_field")]
+    pub source: (Parameter, f64),
     /// The angular frequencies of the forcing, rad/s.
     pub band: [f64; 2],
     /// The unit in which frequencies are told: Hz, rpm or rad/s.
     pub frequencies: &'static str,
+    /// Mass of the damper, kg.
     pub mass: f64,
+    /// What is made small.
     pub goal: Measure,
     /// The largest value allowed of quantities.
     pub limits: Limits,
@@ -35,26 +40,14 @@ pub struct Requirements {
     pub k2_max: Option<f64>,
     /// Share by which k1 may be off.
     pub k1_error: Option<f64>,
+    /// The dampers that are compared.
     pub dampers: Dampers,
     /// The walls of an SSVI NES.
     pub wall: Option<Wall>,
 }
 
-/// What moves the structure.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub enum Driving {
-    /// A force of this amplitude, N.
-    #[serde(rename = "P")]
-    Force(f64),
-    /// A rotating imbalance, kg·m.
-    #[serde(rename = "imbalance")]
-    Imbalance(f64),
-    /// A base that moves by this amplitude, m.
-    #[serde(rename = "base")]
-    Base(f64),
-    /// A base whose acceleration has this amplitude at every frequency, m/s².
-    #[serde(rename = "base_acceleration")]
-    BaseAcceleration(f64),
+fn as_field<S: Serializer>(source: &(Parameter, f64), serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map([(source.0.symbol(), source.1)])
 }
 
 /// The dampers that are compared.
@@ -177,11 +170,12 @@ impl Requirements {
 
     /// What moves it, at the frequency of the band that is nearest to its own.
     fn forcing(&self) -> Result<Forcing, Error> {
-        let source = match self.source {
-            Driving::Force(amplitude) => Source::Force(NonNegative::new(amplitude)?),
-            Driving::Imbalance(amplitude) => Source::Imbalance(NonNegative::new(amplitude)?),
-            Driving::Base(amplitude) => Source::Base(NonNegative::new(amplitude)?),
-            Driving::BaseAcceleration(amplitude) => Source::BaseAcceleration(NonNegative::new(amplitude)?),
+        let amplitude = NonNegative::new(self.source.1)?;
+        let source = match self.source.0 {
+            Parameter::Imbalance => Source::Imbalance(amplitude),
+            Parameter::Base => Source::Base(amplitude),
+            Parameter::BaseAcceleration => Source::BaseAcceleration(amplitude),
+            _ => Source::Force(amplitude),
         };
         let frequency = self.natural_frequency().clamp(self.band[0], self.band[1]);
         Ok(Forcing { source, frequency: NonNegative::new(frequency)?, start: None })

@@ -1,7 +1,7 @@
 //! Numbers of a design as a person reads them.
 
 use super::candidate::Candidate;
-use super::requirements::{Constraint, Driving, Requirements};
+use super::requirements::{Constraint, Requirements};
 use retune_model::{Measure, Parameter, unit};
 use retune_study::rounded;
 use std::f64::consts::TAU;
@@ -105,12 +105,10 @@ pub(super) fn asked(requirements: &Requirements) -> Vec<String> {
     let own = natural(requirements);
     let critical = 2.0 * requirements.m1 * requirements.natural_frequency();
     let driving = match requirements.source {
-        Driving::Force(force) => format!("a force of {}", sized(force, "N")),
-        Driving::Imbalance(imbalance) => format!("an imbalance of {} kg·m", rounded(imbalance, 4)),
-        Driving::Base(base) => format!("a base that moves by {}", sized(base, "m")),
-        Driving::BaseAcceleration(acceleration) => {
-            format!("a base that is accelerated by {}", sized(acceleration, "m/s²"))
-        }
+        (Parameter::Imbalance, imbalance) => format!("an imbalance of {} kg·m", rounded(imbalance, 4)),
+        (Parameter::Base, base) => format!("a base that moves by {}", sized(base, "m")),
+        (Parameter::BaseAcceleration, a) => format!("a base that is accelerated by {}", sized(a, "m/s²")),
+        (_, force) => format!("a force of {}", sized(force, "N")),
     };
     let unit = requirements.frequencies;
     let [from, to] = requirements.band.map(|end| frequency(end, unit));
