@@ -272,9 +272,8 @@ impl Block {
             Self::Statements(all) => html! { ul.statements { @for one in all { (one.html()) } } },
             Self::List(all) => html! { ul { @for words in all { li { (words) } } } },
             Self::Table(caption, head, rows) => {
-                let head: Vec<&str> = head.iter().map(String::as_str).collect();
-                let mut table = Table::new(caption.as_str(), &head);
-                rows.iter().for_each(|row| table.row(row.iter().cloned()));
+                let mut table = Table { head: head.clone(), ..Table::new(caption.as_str(), "") };
+                rows.iter().for_each(|row| table.row(row));
                 table.markup()
             }
             Self::Figure(Figure { drawing, caption, .. }) => figure(drawing, html! { (caption) }),

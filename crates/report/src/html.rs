@@ -34,25 +34,25 @@ pub struct Table {
 }
 
 impl Table {
-    /// A table without rows.
-    pub fn new(caption: impl Into<String>, head: &[&str]) -> Self {
-        let head = head.iter().map(|name| (*name).to_owned()).collect();
+    /// A table without rows; its headings as they stand in the head of a Markdown table.
+    pub fn new(caption: impl Into<String>, head: &str) -> Self {
+        let head = head.split(" | ").map(str::to_owned).collect();
         Self { caption: caption.into(), head, rows: Vec::new(), wraps: false }
     }
 
     /// The same for cells with words, which break into lines.
-    pub fn wrapping(caption: impl Into<String>, head: &[&str]) -> Self {
+    pub fn wrapping(caption: impl Into<String>, head: &str) -> Self {
         Self { wraps: true, ..Self::new(caption, head) }
     }
 
     /// Adds a row of texts. Long ones break into lines in any table, in a column that stays wide enough to be read.
-    pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+    pub fn row(&mut self, cells: impl IntoIterator<Item = impl ToString>) {
         let wraps = self.wraps;
         let cell = |text: String| {
             let is_long = !wraps && text.chars().count() > LONG;
             html! { @if is_long { span.long { (text) } } @else { (text) } }
         };
-        self.rows.push(cells.into_iter().map(cell).collect());
+        self.rows.push(cells.into_iter().map(|text| cell(text.to_string())).collect());
     }
 
     /// Its HTML: it scrolls in its own box where it is wider than the page.

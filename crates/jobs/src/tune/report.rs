@@ -54,8 +54,8 @@ fn origin(findings: &Findings, files: &[String], study: &str) -> Section {
     let solver = findings.study.solver;
     let window = findings.study.window;
     let Identity { study: sha, version, arithmetic } = Identity::of(study);
-    let mut table = Table::wrapping("Study, program and method", &["what", "value"]);
-    let mut row = |what: &str, value: String| table.row([what.to_owned(), value]);
+    let mut table = Table::wrapping("Study, program and method", "what | value");
+    let mut row = |what: &str, value: String| table.row([what, &value]);
     row("study", findings.study.name().to_owned());
     row("SHA-256 of study.json", sha);
     row("Retune", version);

@@ -166,29 +166,22 @@ fn others(needs: &Needs, measure: Measure) -> String {
 fn parameters(findings: &Findings) -> Markup {
     let Some(damper) = findings.tuned.damper else { return html! {} };
     let varied = &findings.search.variables;
-    let mut table = Table::new(
-        "The damper",
-        &["symbol", "name", "value", "unit", baseline(&findings.study.scene), "tuned"],
-    );
+    let baseline = baseline(&findings.study.scene);
+    let mut table = Table::new("The damper", &format!("symbol | name | value | unit | {baseline} | tuned"));
     let mut shown = vec![Parameter::M2];
     shown.extend(Parameter::columns(varied).into_iter().filter(|one| *one != Parameter::M2));
     for parameter in shown {
         let Some(value) = parameter.of_damper(&damper) else { continue };
-        table.row([
-            parameter.to_string(),
-            parameter.words().to_owned(),
-            four(value),
-            parameter.unit().to_owned(),
-            four(parameter.of(&findings.study.scene).unwrap_or(f64::NAN)),
-            if varied.contains(&parameter) { "tuned" } else { "given" }.to_owned(),
-        ]);
+        let own = four(parameter.of(&findings.study.scene).unwrap_or(f64::NAN));
+        let tuned = if varied.contains(&parameter) { "tuned" } else { "given" };
+        table.row([parameter.symbol(), parameter.words(), &four(value), parameter.unit(), &own, tuned]);
     }
     table.markup()
 }
 
 fn limits(findings: &Findings) -> Option<Table> {
     let note = findings.optimum.limits.as_ref()?;
-    let mut table = Table::new("Limits", &["limit", "largest in any run", "allowed", "unit", "state"]);
+    let mut table = Table::new("Limits", "limit | largest in any run | allowed | unit | state");
     for &(limit, reached) in &note.reached {
         let Some(allowed) = note.allowed.get(limit) else { continue };
         let state = match (reached > allowed, note.active.contains(&limit)) {
@@ -196,13 +189,7 @@ fn limits(findings: &Findings) -> Option<Table> {
             (_, true) => "kept, and it determines the design",
             _ => "kept",
         };
-        table.row([
-            limit.to_string(),
-            four(reached),
-            four(allowed),
-            limit.unit().to_owned(),
-            state.to_owned(),
-        ]);
+        table.row([limit.name(), &four(reached), &four(allowed), limit.unit(), state]);
     }
     Some(table)
 }

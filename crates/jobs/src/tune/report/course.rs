@@ -5,11 +5,15 @@ use super::numbers::{amount, digits, four};
 use crate::amount::label;
 use crate::tune::log::worth;
 use crate::tune::optimum::stop_words;
+use crate::tune::pictures::label as picture_label;
 use crate::tune::refine::Descended;
 use maud::{Markup, html};
-use retune_optim::{Bounds, value_of};
+use retune_model::Parameter;
+use retune_optim::{Bounds, Counts, value_of};
+use retune_report::cells;
 use retune_report::document::{Block, Section};
 use retune_report::html::{Table, figure, link};
+use retune_report::table::Cell;
 use retune_store::Directory;
 use retune_study::counted;
 
@@ -43,20 +47,10 @@ pub fn section(findings: &Findings, results: &Directory) -> Section {
 
 fn stages(findings: &Findings) -> Table {
     let quantity = findings.quantity();
-    let mut table = Table::new(
-        "Stages of the search",
-        &[
-            "stage",
-            "evaluations",
-            "broke a limit",
-            "could not be computed",
-            &format!("best {}", quantity.name()),
-        ],
-    );
-    let mut row = |stage: &str, counts: retune_optim::Counts, failed: u64, best: f64| {
-        let counts = [counts.evaluations, counts.infeasible, failed].map(|count| count.to_string());
-        let [evaluations, infeasible, failed] = counts;
-        table.row([stage.to_owned(), evaluations, infeasible, failed, worth(best, quantity)]);
+    let head = "stage | evaluations | broke a limit | could not be computed | best";
+    let mut table = Table::new("Stages of the search", &format!("{head} {}", quantity.name()));
+    let mut row = |stage: &str, counts: Counts, failed: u64, best: f64| {
+        table.row(cells![stage, counts.evaluations, counts.infeasible, failed, worth(best, quantity)]);
     };
     if let Some(surf) = findings.surf {
         row("grid", surf.counts, surf.failures.count, surf.least);
@@ -70,35 +64,27 @@ fn stages(findings: &Findings) -> Table {
     table
 }
 
+/// The headings of the tuned parameters, after others.
+fn variables(findings: &Findings) -> String {
+    let variables = findings.search.variables.iter();
+    variables.map(|variable| format!(" | {}", picture_label(*variable))).collect()
+}
+
 fn starts(findings: &Findings) -> Table {
     let (name, unit) = (findings.quantity().name(), findings.quantity().unit());
-    let mut head: Vec<String> = [
-        "refinement",
-        "starts from",
-        &format!("{name} there, {unit}"),
-        &format!("{name} found, {unit}"),
-        "iterations",
-        "evaluations",
-        "stop",
-    ]
-    .map(str::to_owned)
-    .to_vec();
-    head.extend(findings.search.variables.iter().map(|variable| format!("{variable}, {}", variable.unit())));
-    let mut table = Table { head, ..Table::new("Refinements", &[]) };
+    let head = format!(
+        "refinement | starts from | {name} there, {unit} | {name} found, {unit} | iterations | evaluations | stop{}",
+        variables(findings)
+    );
+    let mut table = Table::new("Refinements", &head);
     for (i, run) in findings.refined.runs.iter().enumerate() {
         let minimum = &run.minimum;
         let start = run.rows.first().map_or(f64::NAN, |row| value_of(row.value));
         let best = if i == findings.refined.winner { " (best)" } else { "" };
-        let mut cells = vec![
-            format!("{}{best}", i + 1),
-            findings.origin(i).to_owned(),
-            four(start),
-            four(value_of(minimum.value)),
-            minimum.iterations.to_string(),
-            minimum.func_count.to_string(),
-            if run.descent.is_some() { "descent".to_owned() } else { stop_words(minimum.stop).to_owned() },
-        ];
-        cells.extend(minimum.x.iter().map(|value| four(*value)));
+        let stop = if run.descent.is_some() { "descent" } else { stop_words(minimum.stop) };
+        let mut cells = cells![format!("{}{best}", i + 1), findings.origin(i), four(start)];
+        cells.extend(cells![four(value_of(minimum.value)), minimum.iterations, minimum.func_count, stop]);
+        cells.extend(minimum.x.iter().map(|value| Cell::from(four(*value))));
         table.row(cells);
     }
     table
@@ -106,25 +92,21 @@ fn starts(findings: &Findings) -> Table {
 
 fn basins(findings: &Findings) -> Option<Table> {
     let found = findings.optimum.global.as_ref()?;
-    let mut head: Vec<String> =
-        ["basin", "searches that reached it", "refinements", &label(findings.quantity())]
-            .map(str::to_owned)
-            .to_vec();
-    head.extend(findings.search.variables.iter().map(|variable| format!("{variable}, {}", variable.unit())));
+    let head = format!(
+        "basin | searches that reached it | refinements | {}{}",
+        label(findings.quantity()),
+        variables(findings)
+    );
     let caption = format!(
         "Basins: that of the optimum was reached by {} of {}",
         found.reached_optimum,
         counted(found.searches as u64, "search")
     );
-    let mut table = Table { head, ..Table::new(caption, &[]) };
+    let mut table = Table::new(caption, &head);
     for (i, basin) in found.basins.iter().enumerate() {
-        let counts = [i + 1, basin.searches, basin.refinements].map(|count| count.to_string());
-        let design = findings
-            .search
-            .variables
-            .iter()
-            .map(|variable| four(basin.design.get(*variable).unwrap_or(f64::NAN)));
-        table.row(counts.into_iter().chain([four(basin.found.value)]).chain(design));
+        let counts = cells![i + 1, basin.searches, basin.refinements, four(basin.found.value)];
+        let value = |variable: &Parameter| four(basin.design.get(*variable).unwrap_or(f64::NAN)).into();
+        table.row(counts.into_iter().chain(findings.search.variables.iter().map(value)));
     }
     Some(table)
 }
@@ -166,12 +148,10 @@ fn grid_words(findings: &Findings) -> Markup {
 }
 
 fn tuned(findings: &Findings) -> Table {
-    let mut head =
-        vec!["parameter", "lower bound", "the study's", "found", "upper bound", "between the bounds"];
     let best = findings.surf.map(|surf| (surf, surf.point(surf.best)));
-    if best.is_some() {
-        head.insert(3, "best of the grid");
-    }
+    let of_grid = if best.is_some() { " | best of the grid" } else { "" };
+    let head =
+        format!("parameter | lower bound | the study's{of_grid} | found | upper bound | between the bounds");
     let mut table = Table::new("The tuned parameters", &head);
     let bounds = &findings.search.options.bounds;
     for (i, &variable) in findings.search.variables.iter().enumerate() {

@@ -49,9 +49,8 @@ fn words(findings: &Findings) -> Table {
     let (motion, response) = (&findings.measured().motion, findings.response);
     let [structure, obstacle] = motion.contacts_per_period;
     let exponent = format!("{} ± {}", four(motion.exponent), digits(motion.exponent_error, 2));
-    let mut table = Table::wrapping("The motion in numbers", &["quantity", "value", "meaning"]);
-    let mut row =
-        |name: &str, value: String, meaning: &str| table.row([name.to_owned(), value, meaning.to_owned()]);
+    let mut table = Table::wrapping("The motion in numbers", "quantity | value | meaning");
+    let mut row = |name: &str, value: String, meaning: &str| table.row([name, &value, meaning]);
     row(
         "kind",
         motion.regime.clone(),
@@ -87,12 +86,10 @@ fn words(findings: &Findings) -> Table {
 /// The same run by other methods.
 fn methods(findings: &Findings) -> Table {
     let quantity = findings.quantity();
-    let mut table = Table::new(
-        format!("{} of the worst run by other methods and tolerances", quantity.name()),
-        &["method", "relative tolerance", &label(quantity)],
-    );
+    let caption = format!("{} of the worst run by other methods and tolerances", quantity.name());
+    let mut table = Table::new(caption, &format!("method | relative tolerance | {}", label(quantity)));
     for run in &findings.measured().convergence {
-        table.row([run.method.name().to_owned(), format!("{:e}", run.rtol), digits(run.value.value, 10)]);
+        table.row([run.method.name(), &format!("{:e}", run.rtol), &digits(run.value.value, 10)]);
     }
     table
 }

@@ -45,14 +45,9 @@ fn said(value: f64, quantity: Measure) -> String {
 fn table(findings: &Findings) -> Table {
     let certificate = &findings.optimum.certificate;
     let (name, unit) = (findings.quantity().name(), findings.quantity().unit());
-    let head = [
-        "parameter",
-        "value",
-        &format!("change for 1 % more, {unit}"),
-        &format!("largest within 1 %, {unit}"),
-        "at, %",
-        "against the design, %",
-    ];
+    let head = format!(
+        "parameter | value | change for 1 % more, {unit} | largest within 1 %, {unit} | at, % | against the design, %"
+    );
     let mut table = Table::new(format!("{name} with one parameter off"), &head);
     for one in &certificate.measured.sensitivity {
         let sign = |value: f64, text: String| if value > 0.0 { format!("+{text}") } else { text };
@@ -72,7 +67,7 @@ fn table(findings: &Findings) -> Table {
 fn walls_table(findings: &Findings, walls: &Walls) -> Table {
     let own = findings.optimum.certificate.value.value;
     let quantity = findings.quantity();
-    let head = ["walls", &label(quantity), "worst at ω, rad/s", "against the design, %"];
+    let head = format!("walls | {} | worst at ω, rad/s | against the design, %", label(quantity));
     let title =
         format!("{} with other walls: e is the restitution at every speed, K the stiffness", quantity.name());
     let mut table = Table::new(title, &head);
