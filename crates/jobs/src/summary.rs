@@ -245,11 +245,8 @@ impl std::fmt::Display for Summary {
         writeln!(f, "E1max       {:<12.7} J at t = {:.4} s", self.e1_max, self.t_e1_max)?;
         writeln!(f, "E2max       {:<12.7} J at t = {:.4} s", self.e2_max, self.t_e2_max)?;
         writeln!(f, "R1, R2      {:.5}, {:.5}", self.r1, self.r2)?;
-        writeln!(
-            f,
-            "impacts     {} on the primary structure, {} on the obstacle",
-            self.impacts.primary, self.impacts.obstacle
-        )?;
+        let Walls { primary, obstacle } = self.impacts;
+        writeln!(f, "impacts     {primary} on the primary structure, {obstacle} on the obstacle")?;
         let Walls { primary, obstacle } = self.force_max;
         if primary.max(obstacle).is_infinite() {
             writeln!(f, "force max   without bound: an impact with a rigid wall is an impulse")?;
@@ -259,16 +256,9 @@ impl std::fmt::Display for Summary {
                 "force max   {primary:.3} N on the primary structure, {obstacle:.3} N on the obstacle"
             )?;
         }
-        writeln!(
-            f,
-            "stroke      {:.6} m, the largest spring deflection |x2 - x1 - D|",
-            self.spring_deflection_max
-        )?;
-        writeln!(
-            f,
-            "rel. displ. {:.6} m, the largest relative displacement |x2 - x1|",
-            self.relative_displacement_max
-        )?;
+        let (stroke, relative) = (self.spring_deflection_max, self.relative_displacement_max);
+        writeln!(f, "stroke      {stroke:.6} m, the largest spring deflection |x2 - x1 - D|")?;
+        writeln!(f, "rel. displ. {relative:.6} m, the largest relative displacement |x2 - x1|")?;
         let Structure { x1max, t_x1, v1max, t_v1, a1max, t_a1, ground_force_max, t_ground_force } =
             self.structure;
         writeln!(f, "x1max       {x1max:<12.7} m at t = {t_x1:.4} s")?;
@@ -288,13 +278,8 @@ impl std::fmt::Display for Summary {
             writeln!(f, "transmiss.  {share:<12.5} the transmissibility: {by}")?;
         }
         writeln!(f, "model       {model}")?;
-        write!(
-            f,
-            "work        {}, {} rejected, {}",
-            counted(self.steps, "step"),
-            self.rejected,
-            counted(self.evaluations, "evaluation")
-        )
+        let (steps, evaluations) = (counted(self.steps, "step"), counted(self.evaluations, "evaluation"));
+        write!(f, "work        {steps}, {} rejected, {evaluations}", self.rejected)
     }
 }
 

@@ -45,12 +45,8 @@ impl std::fmt::Display for Certificate {
             let digits = if value.is_finite() { format!("{value:.10} {unit}") } else { NONE.to_owned() };
             writeln!(f, "  {method:<14}{digits}")?;
         }
-        if let Some(finer) = measured.finer {
-            writeln!(
-                f,
-                "samples       the value is a lower bound; {} with {FINER} times the samples",
-                said(finer)
-            )?;
+        if let Some(finer) = measured.finer.map(said) {
+            writeln!(f, "samples       the value is a lower bound; {finer} with {FINER} times the samples")?;
         }
         let Motion { regime, exponent, exponent_error, contacts_per_period: [a, b], confidence, .. } = motion;
         writeln!(f, "motion        {regime} (probability {confidence:.2})")?;
