@@ -184,9 +184,7 @@ impl Powers {
         let [structure, damper, impacts] = self.parts();
         let total = structure + damper + impacts;
         let [c1, c2, impacts] = self.parts().map(|part| rounded(100.0 * part / total, 3));
-        let total_words = rounded(total, 4);
-        (total > 0.0).then(|| {
-            format!("{total_words} W on average: {c1} % in c1, {c2} % in c2, {impacts} % in impacts")
-        })
+        let on_average = format!("{} W on average", rounded(total, 4));
+        (total > 0.0).then(|| format!("{on_average}: {c1} % in c1, {c2} % in c2, {impacts} % in impacts"))
     }
 }

@@ -25,14 +25,10 @@ pub fn fronts(plan: &FrontsPlan) -> String {
 /// Describes a study.
 pub fn study(study: &Study) -> String {
     let primary = study.scene.primary;
-    let mut lines = vec![format!(
-        "study {}: k1 = {} N/m, {}; maxima from t0 = {} s to T = {} s",
-        study.name(),
-        primary.stiffness.get(),
-        forced(&study.scene.forcing),
-        study.window.t0.get(),
-        study.window.end.get(),
-    )];
+    let (name, k1, forced) = (study.name(), primary.stiffness.get(), forced(&study.scene.forcing));
+    let (t0, end) = (study.window.t0.get(), study.window.end.get());
+    let mut lines =
+        vec![format!("study {name}: k1 = {k1} N/m, {forced}; maxima from t0 = {t0} s to T = {end} s")];
     match study.scene.damper {
         None => lines.push("no damper".to_owned()),
         Some(damper) => {
@@ -177,18 +173,12 @@ fn given(History { of, course }: &History) -> String {
 fn starts(search: &Search) -> String {
     let mut from = Vec::new();
     if let Some((variables, grid)) = &search.surf {
-        from.push(format!(
-            "a grid of {} over {}",
-            counted(grid.len() as u64, "point"),
-            joined(variables, ", ")
-        ));
+        let points = counted(grid.len() as u64, "point");
+        from.push(format!("a grid of {points} over {}", joined(variables, ", ")));
     }
     if let Some((global, ..)) = &search.global {
-        from.push(format!(
-            "a global search ({}, {})",
-            counted(global.samples.into(), "design"),
-            counted(global.searches as u64, "CMA-ES search")
-        ));
+        let searches = counted(global.searches as u64, "CMA-ES search");
+        from.push(format!("a global search ({}, {searches})", counted(global.samples.into(), "design")));
     }
     if !search.given.is_empty() {
         from.push(counted(search.given.len() as u64, "given design"));

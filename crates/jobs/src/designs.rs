@@ -68,11 +68,6 @@ impl Row {
             needs: optimum.needs.as_ref().map(|needs| needs.damper),
         }
     }
-
-    /// By how many times E1max is smaller than without a damper.
-    fn reduction(&self) -> f64 {
-        self.none / self.e1_max
-    }
 }
 
 impl Designs {
@@ -109,24 +104,19 @@ impl Designs {
     pub fn text(&self) -> String {
         let any_printed = self.rows.iter().any(|row| row.printed.is_some());
         let printed = |text: &str| if any_printed { format!("{text:<10}") } else { String::new() };
+        let (head, column) = (table2_header(), self.column);
         let mut lines = vec![format!(
-            "{:<14}{:<84}{}{:<11}{:<8}verdict",
-            self.column,
-            table2_header(),
+            "{column:<14}{head:<84}{}{:<11}{:<8}verdict",
             printed("printed"),
             "E1max, J",
-            "none /",
+            "none /"
         )];
         for row in &self.rows {
-            lines.push(format!(
-                "{:<14}{:<84}{}{:<11}{:<8.2}{}",
-                row.label,
-                table2_row(&row.damper, &row.found),
-                printed(&row.printed.map(short).unwrap_or_default()),
-                short(row.e1_max),
-                row.reduction(),
-                row.verdict
-            ));
+            let Row { label, damper, found, e1_max, verdict, .. } = row;
+            let (printed, damper) =
+                (printed(&row.printed.map(short).unwrap_or_default()), table2_row(damper, found));
+            let (e1_max, times) = (short(*e1_max), row.none / e1_max);
+            lines.push(format!("{label:<14}{damper:<84}{printed}{e1_max:<11}{times:<8.2}{verdict}"));
         }
         lines.push(String::new());
         for Row { label, damper, found, needs, reason, .. } in &self.rows {

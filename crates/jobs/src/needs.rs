@@ -141,13 +141,9 @@ impl Largest {
 
     /// The motion of the structure and its force on the ground.
     fn structure_words(&self) -> String {
-        let of = |measure| self.words(measure);
-        format!(
-            "moves by {}, accelerates by {} and loads the ground with {}",
-            of(Measure::Displacement),
-            of(Measure::Acceleration),
-            of(Measure::GroundForce)
-        )
+        let of = [Measure::Displacement, Measure::Acceleration, Measure::GroundForce];
+        let [x1, a1, force] = of.map(|measure| self.words(measure));
+        format!("moves by {x1}, accelerates by {a1} and loads the ground with {force}")
     }
 
     /// What the objective looks at, where it is less.
@@ -228,12 +224,9 @@ impl Needs {
                 let linear = self.linear.as_ref().map_or(String::new(), |linear| {
                     format!(", {} with the best TMD", linear.needs.sized(measure))
                 });
-                lines.push(format!(
-                    "it raises {} from {} (no damper{linear}) to {}",
-                    measure.words(),
-                    sized(measure, without),
-                    sized(measure, own)
-                ));
+                let ([from, to], words) =
+                    ([without, own].map(|value| sized(measure, value)), measure.words());
+                lines.push(format!("it raises {words} from {from} (no damper{linear}) to {to}"));
             }
         }
         lines

@@ -113,12 +113,8 @@ impl Shared<'_> {
         }
         let work = open(&place, order, identity, watch)?;
         let some = shard.points(len);
-        watch.log(&format!(
-            "shard {shard}: points {} to {} of {len}, {} of them known",
-            some.start,
-            some.end,
-            work.journal().known() / width as u64
-        ))?;
+        let (Range { start, end }, known) = (some.clone(), work.journal().known() / width as u64);
+        watch.log(&format!("shard {shard}: points {start} to {end} of {len}, {known} of them known"))?;
         let bar = watch.progress("shard", some.len() as u64);
         let found = compute(rows, some.clone(), work.journal(), &*bar);
         bar.finish();
@@ -263,11 +259,9 @@ impl Shared<'_> {
             heads.push(head);
         }
         check(&mut heads, self.rows.len(), &self.command, &place)?;
-        watch.log(&format!(
-            "{}, {}: complete, disjoint, of this study",
-            counted(heads.len() as u64, "part"),
-            counted(self.rows.len() as u64, "point")
-        ))?;
+        let [parts, points] = [(heads.len(), "part"), (self.rows.len(), "point")]
+            .map(|(count, noun)| counted(count as u64, noun));
+        watch.log(&format!("{parts}, {points}: complete, disjoint, of this study"))?;
         for head in heads {
             read(&head.path, |number, value| results.know(number, value))?;
         }

@@ -180,12 +180,8 @@ pub(super) fn compare(
     let formulas =
         formulas.into_iter().map(|formula| by(requirements, tmd_study, formula)).collect::<Result<_, _>>()?;
     let kept = if tmd.feasible { "" } else { " (breaks a limit)" };
-    watch.result(&format!(
-        "\nTMD, exact: {} {}{kept}, {}",
-        goal.name(),
-        sized(tmd.goal, goal.unit()),
-        parameters(&tmd)
-    ))?;
+    let (name, has) = (goal.name(), sized(tmd.goal, goal.unit()));
+    watch.result(&format!("\nTMD, exact: {name} {has}{kept}, {}", parameters(&tmd)))?;
     let (mut ssvi, mut tried, mut judged) = (None, None, None);
     if requirements.dampers != Dampers::Tmd {
         watch.result("SSVI NES, from known designs: some seconds (Ctrl-C leaves what stands above)")?;

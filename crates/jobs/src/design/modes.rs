@@ -20,13 +20,10 @@ pub fn structure(path: &Path, which: Option<usize>) -> Result<(Specification, St
     let refused = |problem: String| Error::Requirement { place: file.clone(), problem };
     let modes = modes(&retune_store::plain::text(path)?).map_err(&refused)?;
     let given = which.map_or_else(|| most_felt(&modes), |number| number.checked_sub(1));
-    let chosen = given.filter(|i| *i < modes.len()).ok_or_else(|| Error::Requirement {
+    let (count, number) = (modes.len(), which.unwrap_or(0));
+    let chosen = given.filter(|i| *i < count).ok_or_else(|| Error::Requirement {
         place: "--mode".to_owned(),
-        problem: format!(
-            "{} is not allowed here: give a number from 1 to {}",
-            which.unwrap_or(0),
-            modes.len()
-        ),
+        problem: format!("{number} is not allowed here: give a number from 1 to {count}"),
     })?;
     let mode = modes[chosen];
     let primary = mode.primary().map_err(|error| {
@@ -36,16 +33,11 @@ pub fn structure(path: &Path, which: Option<usize>) -> Result<(Specification, St
     let typed = |value: f64| Some(value.to_string().into());
     let specification =
         Specification { m1: typed(m1), k1: typed(k1), c1: typed(c1), ..Specification::default() };
+    let ([m1, k1, c1], number) = ([m1, k1, c1].map(|value| rounded(value, 6)), chosen + 1);
+    let (own, others) = (frequency(mode.omega.get()), rounded(100.0 * left_out(&modes, chosen), 2));
     let words = format!(
-        "mode {} of {}, {}, is at the damper a structure of m1 = {} kg, k1 = {} N/m and c1 = {} N·s/m; at its frequency the modes that \
-         are left out add {} % to its displacement by a force there",
-        chosen + 1,
-        modes.len(),
-        frequency(mode.omega.get()),
-        rounded(m1, 6),
-        rounded(k1, 6),
-        rounded(c1, 6),
-        rounded(100.0 * left_out(&modes, chosen), 2)
+        "mode {number} of {count}, {own}, is at the damper a structure of m1 = {m1} kg, k1 = {k1} N/m and c1 = {c1} N·s/m; at its \
+         frequency the modes that are left out add {others} % to its displacement by a force there"
     );
     Ok((specification.within(&file), words))
 }

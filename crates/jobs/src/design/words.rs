@@ -116,19 +116,12 @@ pub(super) fn asked(requirements: &Requirements) -> Vec<String> {
     let limits: Vec<String> =
         requirements.constraints().into_iter().map(|constraint| limit(requirements, constraint)).collect();
     let limits = if limits.is_empty() { String::new() } else { format!(", {}", limits.join(", ")) };
+    let Requirements { m1, k1, c1, mass, goal, .. } = requirements;
+    let (damping, share, goal) = (percent(c1 / critical), percent(mass / m1), goal.name());
+    let ([m1, mass], k1) = ([*m1, *mass].map(|mass| sized(mass, "kg")), sized(*k1, "N/m"));
     vec![
-        format!(
-            "Structure: {} on {}, {own}, damping {}; {driving}, {from} to {to}.",
-            sized(requirements.m1, "kg"),
-            sized(requirements.k1, "N/m"),
-            percent(requirements.c1 / critical)
-        ),
-        format!(
-            "Asked for: a damper of {} ({}) with the least {}{limits}.",
-            sized(requirements.mass, "kg"),
-            percent(requirements.mass / requirements.m1),
-            requirements.goal.name()
-        ),
+        format!("Structure: {m1} on {k1}, {own}, damping {damping}; {driving}, {from} to {to}."),
+        format!("Asked for: a damper of {mass} ({share}) with the least {goal}{limits}."),
     ]
 }
 

@@ -38,13 +38,8 @@ fn peak(sweep: &Sweep, table: &Table, name: &str) -> Option<String> {
     let (row, value) = extreme(&table.column(name)?, 1.0)?;
     let over = sweep.plan().over;
     let unit = table.unit(name);
-    let at = rounded(sweep.value(row), 4);
-    Some(format!(
-        "{name} is largest at {} = {at} {}: {} {unit}",
-        over.symbol(),
-        over.unit(),
-        rounded(value, 4)
-    ))
+    let [at, value] = [sweep.value(row), value].map(|value| rounded(value, 4));
+    Some(format!("{name} is largest at {over} = {at} {}: {value} {unit}", over.unit()))
 }
 
 fn made_by(sweep: &Sweep) -> String {

@@ -119,12 +119,8 @@ fn answer(sweep: &Sweep, table: &Table, values: &[f64], name: &str) -> Vec<Strin
         let numbers = table.column(column)?;
         let (high, low) = (extreme(&numbers, 1.0)?, extreme(&numbers, -1.0)?);
         let words = |(row, value): (usize, f64)| {
-            format!(
-                "{} {unit}{}at {}",
-                rounded(value, 4),
-                if unit.is_empty() { "" } else { " " },
-                at(sweep, values[row])
-            )
+            let space = if unit.is_empty() { "" } else { " " };
+            format!("{} {unit}{space}at {}", rounded(value, 4), at(sweep, values[row]))
         };
         let same = high.1 == low.1;
         let always = format!("{} {unit} at every value", rounded(high.1, 4));

@@ -76,13 +76,12 @@ impl Explored {
         let best = &self.basins[0].best;
         let at = search.variables.iter().zip(&best.x);
         let at: Vec<String> = at.map(|(variable, value)| format!("{variable} = {}", short(*value))).collect();
+        let evaluations = counted(self.counts.evaluations, "evaluation");
+        let searches = counted(self.searches.len() as u64, "search");
+        let (places, best) = (counted(self.basins.len() as u64, "place"), worth(best.value, quantity));
+        let at = at.join(", ");
         format!(
-            "global: {seconds:.1} s, {}; {} came to {}; the best has {} at {}",
-            counted(self.counts.evaluations, "evaluation"),
-            counted(self.searches.len() as u64, "search"),
-            counted(self.basins.len() as u64, "place"),
-            worth(best.value, quantity),
-            at.join(", ")
+            "global: {seconds:.1} s, {evaluations}; {searches} came to {places}; the best has {best} at {at}"
         )
     }
 }

@@ -77,17 +77,11 @@ pub(super) fn surf(
     let Some((variables, grid)) = search.surf.clone() else { return Ok(None) };
     let (objective, most) = (coarse(study, search, &variables), study.coarse().up_to());
     let axes: Vec<String> = grid.axes().iter().map(|axis| axis.points().to_string()).collect();
-    watch.log(&format!(
-        "surf: {} = {} over {}{}{}",
-        axes.join(" x "),
-        counted(grid.len() as u64, "point"),
-        joined(&variables, " "),
-        study.coarse(),
-        study
-            .coarse()
-            .most
-            .map_or_else(String::new, |most| format!(", up to {}", worth(most, study.quantity())))
-    ))?;
+    let (axes, points, over) =
+        (axes.join(" x "), counted(grid.len() as u64, "point"), joined(&variables, " "));
+    let up_to = study.coarse().most.map(|most| format!(", up to {}", worth(most, study.quantity())));
+    let up_to = up_to.unwrap_or_default();
+    watch.log(&format!("surf: {axes} = {points} over {over}{}{up_to}", study.coarse()))?;
 
     let begun = Instant::now();
     let bar = watch.progress("surf", grid.len() as u64);

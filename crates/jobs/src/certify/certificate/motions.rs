@@ -151,12 +151,10 @@ impl Motions {
         if self.from == self.to {
             return format!("{} starts at one frequency", self.starts);
         }
+        let ([share, missed], width) = ([SHARE, MISSED].map(|of| 100.0 * of), rounded(self.width_missed, 2));
+        let starts = self.starts;
         format!(
-            "a motion on which {} % of the starts end is missed by {} starts with a probability below {} % if it is wider than {} rad/s",
-            100.0 * SHARE,
-            self.starts,
-            100.0 * MISSED,
-            rounded(self.width_missed, 2)
+            "a motion on which {share} % of the starts end is missed by {starts} starts with a probability below {missed} % if it is wider than {width} rad/s"
         )
     }
 

@@ -91,14 +91,8 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
     let against = |other: &Result<Evaluation, Unusable>| match other {
         Ok(other) => {
             let words = compared(energy, other.value).unwrap_or_else(|| "–".to_owned());
-            (
-                words,
-                format!(
-                    "{}{}",
-                    amount(other.value, quantity),
-                    placed(", worst at ", other.worst.scene.forcing.frequency.get())
-                ),
-            )
+            let worst = placed(", worst at ", other.worst.scene.forcing.frequency.get());
+            (words, format!("{}{worst}", amount(other.value, quantity)))
         }
         Err(reason) => ("–".to_owned(), format!("it has no value: {reason}")),
     };

@@ -128,15 +128,8 @@ fn picture(findings: &Findings, curves: &Curves, curve: Curve<'_>) -> Drawing {
     layers.push(Layer::Marks { points: vec![(omega, worst)], mark });
     let mut legend: Vec<(Key, String)> =
         lines.iter().map(|(name, stroke)| (Key::Line(*stroke), (*name).to_owned())).collect();
-    legend.push((
-        Key::Mark(mark),
-        format!(
-            "{}: {} {unit} at {} rad/s",
-            if curves.is_objective { "worst" } else { "tuned for" },
-            four(worst),
-            four(omega)
-        ),
-    ));
+    let what = if curves.is_objective { "worst" } else { "tuned for" };
+    legend.push((Key::Mark(mark), format!("{what}: {} {unit} at {} rad/s", four(worst), four(omega))));
     let chart =
         Chart::of(Axis::linear("ω, rad/s", range).with_second("frequency, Hz", HERTZ), y, layers, 210.0);
     let said: Vec<String> =
