@@ -26,6 +26,7 @@ use crate::job::{Done, Job, Made};
 use crate::summary::Summary;
 use crate::{Error, Observer, Request, certify, resolved};
 use global::Basins;
+use objective::Task;
 use optimum::Searched;
 use report::Findings;
 use retune_store::{Directory, Order};
@@ -118,32 +119,27 @@ fn tuned(
     results: &Directory,
     watch: &dyn Observer,
 ) -> Result<Optimum, Error> {
-    let optimum = search_and_write(study, search, results, watch);
+    let task = Task { study, search, journal: results.journal(), place: "", watch };
+    let optimum = search_and_write(&task, results);
     if optimum.as_ref().is_err_and(|error| !matches!(error, Error::Store(_))) {
         results.discard();
     }
     optimum
 }
 
-fn search_and_write(
-    study: &Study,
-    search: &Search,
-    results: &Directory,
-    watch: &dyn Observer,
-) -> Result<Optimum, Error> {
-    let surf = surf::surf(study, search, results, watch)?;
-    let explored = global::global(study, search, (results.journal(), ""), watch)?;
+fn search_and_write(task: &Task, results: &Directory) -> Result<Optimum, Error> {
+    let Task { study, search, .. } = *task;
+    let surf = surf::surf(task, results)?;
+    let explored = global::global(task)?;
     let on_grid = surf.as_ref().map(|surf| surf.starts(search)).unwrap_or_default();
     let starts = ends::starts(search, &on_grid, explored.as_ref());
     let on_grid = on_grid.len();
-    let mut refined = refine::refine(study, search, &starts, results, watch)?;
-    descent::finish(&mut refined, study, search, (results.journal(), "fminsearch"), watch)?;
+    let mut refined = refine::refine(task, &starts, results)?;
+    descent::finish(task, &mut refined)?;
     results.journal().check()?;
     let (certificate, passed_over) = choice::choose(study, &mut refined)?;
     refine::write_winner(study, &refined, results)?;
-    let basins = explored.as_ref().map(|found| {
-        Basins::new(found, study.quantity(), search, &refined, (results.journal(), ""), on_grid)
-    });
+    let basins = explored.as_ref().map(|found| Basins::new(task, found, &refined, on_grid));
     results.journal().check()?;
     if let Some(basins) = &basins {
         basins.write(&refined.objective, results)?;
@@ -154,7 +150,7 @@ fn search_and_write(
     let scene = found.worst_run(design, refined.objective.goal());
     let response = retune_solver::simulate(&scene, study.window.window(), &study.solver.settings())?;
     let summary = Summary::new(study, scene, &response);
-    let valleys = valley::measure(study, search, &refined.best().minimum.x, results.journal());
+    let valleys = valley::measure(task, &refined.best().minimum.x);
     results.journal().check()?;
     let searched =
         Searched { surf: surf.as_ref(), explored: explored.as_ref(), basins, passed_over, valleys };

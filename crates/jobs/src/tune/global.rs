@@ -1,10 +1,10 @@
 //! The global search of a study, and the basins that it and the refinements found.
 
 use super::log::{BASINS, worth};
-use super::objective::{coarse, kept, searched};
+use super::objective::{Task, coarse, kept, searched};
 use super::refine::{Refined, Run, columns};
+use crate::Error;
 use crate::amount::{Amount, measured};
-use crate::{Error, Observer};
 use rayon::prelude::*;
 use retune_model::{Measure, Parameter, PerVariable};
 use retune_optim::{
@@ -12,8 +12,8 @@ use retune_optim::{
 };
 use retune_report::cells;
 use retune_report::table::{Cell, Column, Table};
-use retune_store::{Directory, Journal};
-use retune_study::{Search, Study, counted, joined, short};
+use retune_store::Directory;
+use retune_study::{Search, counted, joined, short};
 use serde::Serialize;
 use std::time::Instant;
 
@@ -29,12 +29,8 @@ pub struct Explored {
 }
 
 /// Makes the global search of a study, if it asks for one. The journal keeps its values under names that begin with `place`.
-pub(super) fn global(
-    study: &Study,
-    search: &Search,
-    (journal, place): (&Journal, &str),
-    watch: &dyn Observer,
-) -> Result<Option<Explored>, Error> {
+pub(super) fn global(task: &Task) -> Result<Option<Explored>, Error> {
+    let Task { study, search, journal, place, watch } = *task;
     let Some((global, space, apart)) = search.global.clone() else { return Ok(None) };
     let objective = coarse(study, search, &search.variables);
     watch.log(&format!(
@@ -113,14 +109,9 @@ pub(crate) struct BasinNote {
 impl Basins {
     /// Groups the ends of searches and refinements: the end of a search whose basin was refined is the end of that
     /// refinement. In `runs` the refinements of basins follow `skip` others, in the order of the basins.
-    pub(super) fn new(
-        explored: &Explored,
-        quantity: Measure,
-        search: &Search,
-        refined: &Refined,
-        (journal, place): (&Journal, &str),
-        skip: usize,
-    ) -> Self {
+    pub(super) fn new(task: &Task, explored: &Explored, refined: &Refined, skip: usize) -> Self {
+        let Task { study, search, journal, place, .. } = *task;
+        let quantity = study.quantity();
         let runs = &refined.runs;
         let stage = format!("{place}basins");
         let value = kept(&refined.objective, journal, &stage, || ());

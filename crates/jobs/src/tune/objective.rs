@@ -1,10 +1,21 @@
 //! The objective of a study as searches call it.
 
+use crate::Observer;
 use retune_model::{Design, Measure, Positive};
 use retune_optim::{DesignObjective, Evaluation, Goal, Limit, Limits, Parameter};
 use retune_solver::Settings;
 use retune_store::Journal;
 use retune_study::{Search, Study};
+
+/// A search, with the journal that keeps its values under names that begin with `place`, and who hears of it.
+#[derive(Clone, Copy)]
+pub(crate) struct Task<'a> {
+    pub study: &'a Study,
+    pub search: &'a Search,
+    pub journal: &'a Journal,
+    pub place: &'a str,
+    pub watch: &'a dyn Observer,
+}
 
 /// An objective as searches call it: values in the journal are not computed again; `on_known` is called for each of them.
 pub fn kept<'a>(

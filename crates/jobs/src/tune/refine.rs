@@ -1,9 +1,9 @@
 //! The fine stage: `fminsearch` from each start, with its log.
 
 use super::log::{self, LOG, STARTS};
-use super::objective::{kept, searched};
+use super::objective::{Task, kept, searched};
+use crate::Error;
 use crate::summary::MadeBy;
-use crate::{Error, Observer};
 use retune_model::Parameter;
 use retune_optim::{DesignObjective, Minimum, Row, minimize};
 use retune_store::{Directory, Journal, Pending};
@@ -48,17 +48,12 @@ impl Refined {
 }
 
 /// Refines every start; writes `fminsearch-starts.csv` of all where there are several.
-pub(super) fn refine(
-    study: &Study,
-    search: &Search,
-    starts: &[Vec<f64>],
-    results: &Directory,
-    watch: &dyn Observer,
-) -> Result<Refined, Error> {
+pub(super) fn refine(task: &Task, starts: &[Vec<f64>], results: &Directory) -> Result<Refined, Error> {
+    let Task { study, search, watch, .. } = *task;
     let mut all = results.file(STARTS)?;
     all.push_line(&format!("start,{}", log::csv_header(&search.variables, study.quantity())))?;
     let mut begun = 0;
-    let refined = each(study, search, starts, (results.journal(), "fminsearch"), |number, row, design| {
+    let refined = each(task, starts, |number, row, design| {
         if number > begun {
             begun = number;
             watch.log(&format!(
@@ -76,22 +71,20 @@ pub(super) fn refine(
     Ok(refined)
 }
 
-/// Refines every start. `tell` receives the number of the start, from 1, each row and its whole design; its error ends the run. The journal
-/// keeps values under the name of a stage.
+/// Refines every start. `tell` receives the number of the start, from 1, each row and its whole design; its error ends the run.
 pub(super) fn each(
-    study: &Study,
-    search: &Search,
+    task: &Task,
     starts: &[Vec<f64>],
-    (journal, stage): (&Journal, &str),
     mut tell: impl FnMut(usize, &Row, &[f64]) -> Result<(), Error>,
 ) -> Result<Refined, Error> {
+    let Task { study, search, journal, place, .. } = *task;
+    let stage = format!("{place}fminsearch");
     let mut objective = searched(study, search, &search.variables);
     let mut runs: Vec<Run> = Vec::new();
     let mut winner = 0;
     for (number, start) in starts.iter().enumerate() {
-        let run = run(&mut objective, search, start, (journal, stage), |row, design| {
-            tell(number + 1, row, design)
-        })?;
+        let tell = |row: &Row, design: &[f64]| tell(number + 1, row, design);
+        let run = run(&mut objective, search, start, (journal, &stage), tell)?;
         let best = runs.get(winner).map_or(f64::INFINITY, |best: &Run| best.minimum.value);
         if run.minimum.value < best {
             winner = number;

@@ -1,10 +1,10 @@
 //! The coarse stage: the objective on a grid.
 
 use super::log::{GRID, worth};
-use super::objective::{coarse, kept, searched};
+use super::objective::{Task, coarse, kept, searched};
 use super::refine::columns;
+use crate::Error;
 use crate::rows::{Rows, compute};
-use crate::{Error, Observer};
 use retune_model::Measure;
 use retune_optim::{Counts, DesignObjective, Failures, Grid, Parameter, best_separated_above};
 use retune_report::table::{Cell, line};
@@ -68,12 +68,8 @@ impl Rows for Designs {
 }
 
 /// Computes the grid of a study, if it has one, and writes `surf.csv`.
-pub(super) fn surf(
-    study: &Study,
-    search: &Search,
-    results: &Directory,
-    watch: &dyn Observer,
-) -> Result<Option<Surf>, Error> {
+pub(super) fn surf(task: &Task, results: &Directory) -> Result<Option<Surf>, Error> {
+    let Task { study, search, journal, watch, .. } = *task;
     let Some((variables, grid)) = search.surf.clone() else { return Ok(None) };
     let (objective, most) = (coarse(study, search, &variables), study.coarse().up_to());
     let axes: Vec<String> = grid.axes().iter().map(|axis| axis.points().to_string()).collect();
@@ -85,7 +81,6 @@ pub(super) fn surf(
 
     let begun = Instant::now();
     let bar = watch.progress("surf", grid.len() as u64);
-    let journal = results.journal();
     let rows = Designs { objective, most, grid };
     let found = compute(&rows, 0..rows.len(), journal, &*bar);
     let Designs { objective, grid, .. } = rows;
