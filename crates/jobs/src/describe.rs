@@ -193,17 +193,13 @@ fn goal(study: &Study) -> Vec<String> {
     let omega = study.scene.forcing.frequency.get();
     let name = study.quantity().name();
     let steady = objective.response == Response::Steady;
-    let how = match (objective.response, objective.omega) {
-        (Response::Window, Some(band)) => {
-            format!("in the window, on {} and refined at their peaks", counted(band.samples as u64, "sample"))
-        }
-        (Response::Settled, Some(band)) => {
-            format!("settled, on {} and refined at their peaks", counted(band.samples as u64, "sample"))
-        }
-        (Response::Window, None) => "in the window".to_owned(),
-        (Response::Settled, None) => "settled".to_owned(),
-        (Response::Motions, _) => "over all stable motions that are found".to_owned(),
-        (Response::Steady, _) => "steady, exact".to_owned(),
+    let band = objective.omega.map(|band| counted(band.samples as u64, "sample"));
+    let band = band.map_or(String::new(), |samples| format!(", on {samples} and refined at their peaks"));
+    let how = match objective.response {
+        Response::Window => format!("in the window{band}"),
+        Response::Settled => format!("settled{band}"),
+        Response::Motions => "over all stable motions that are found".to_owned(),
+        Response::Steady => "steady, exact".to_owned(),
     };
     if !objective.sum.is_empty() {
         lines.push(format!("for the {}", over(&objective, omega)));
@@ -217,15 +213,13 @@ fn goal(study: &Study) -> Vec<String> {
         && objective.restitution.is_none()
         && objective.omega.is_none()
     {
-        if steady {
-            lines.push(format!("for the steady {name}"));
-        } else if objective.response == Response::Settled {
-            lines.push(format!("for the settled {name}"));
-        } else if objective.response == Response::Motions {
-            lines.push(format!("for the largest {name} of all stable motions that are found"));
-        } else if study.quantity() != Measure::Energy {
-            lines.push(format!("for {name} in the window"));
-        }
+        lines.extend(match objective.response {
+            Response::Steady => Some(format!("for the steady {name}")),
+            Response::Settled => Some(format!("for the settled {name}")),
+            Response::Motions => Some(format!("for the largest {name} of all stable motions that are found")),
+            Response::Window if study.quantity() == Measure::Energy => None,
+            Response::Window => Some(format!("for {name} in the window")),
+        });
     } else {
         let words = over(&objective, omega).replacen("worst over", &format!("worst {name} over"), 1);
         lines.push(format!("for the {words}, {how}"));

@@ -174,12 +174,11 @@ fn compare_with_manifest(place: &Path, there: &[String], report: &mut Report<'_>
         }
         _ => {}
     }
-    let whole =
-        format!("{} as {} made", counted(manifest.files.len() as u64, "file"), was(manifest.files.len()));
-    let words = if problems.is_empty() {
-        whole
-    } else {
-        format!("{}: {}", counted(manifest.files.len() as u64, "file"), problems.join("; "))
+    let files = counted(manifest.files.len() as u64, "file");
+    let made = if manifest.files.len() == 1 { "it was" } else { "they were" };
+    let words = match problems.as_slice() {
+        [] => format!("{files} as {made} made"),
+        problems => format!("{files}: {}", problems.join("; ")),
     };
     report.found("", Some(problems.is_empty()), &words);
     report.watch.result(&format!("  {words}"))?;
@@ -200,10 +199,6 @@ fn compare_with_manifest(place: &Path, there: &[String], report: &mut Report<'_>
         )?;
     }
     Ok(())
-}
-
-fn was(files: usize) -> &'static str {
-    if files == 1 { "it was" } else { "they were" }
 }
 
 /// Whether a file is not a result: a lock, or a hidden file of an editor.

@@ -4,7 +4,7 @@ use super::answer::{build, findings, rows};
 use super::candidate::{Candidate, What};
 use super::comparison::Comparison;
 use super::requirements::{Constraint, Requirements};
-use super::words::{asked, parameters, sized, tuning};
+use super::words::{asked, parameters, radians, sized, tuning};
 use crate::pages::made_by;
 use crate::tune::band::at;
 use rayon::prelude::*;
@@ -144,10 +144,7 @@ fn curve(of: &Candidate, [from, to]: [f64; 2]) -> Curve {
 }
 
 fn curves(requirements: &Requirements, compared: &Comparison) -> Drawing {
-    let size = unit::FREQUENCY
-        .iter()
-        .find(|(name, _)| *name == requirements.frequencies)
-        .map_or(1.0, |(_, size)| *size);
+    let size = radians(requirements.frequencies);
     let curves: Vec<(What, Curve)> =
         compared.all().map(|of| (of.what, curve(of, requirements.band))).collect();
     let ends = requirements.band.map(|end| end / size);

@@ -2,6 +2,7 @@
 
 use super::requirements::{Dampers, Requirements, Wall};
 use super::typed::{Specification, Typed};
+use super::words::radians;
 use crate::Error;
 use retune_model::{Measure, Parameter, Positive, Unit, unit};
 use retune_optim::{Limit, Limits};
@@ -230,8 +231,7 @@ fn band(specification: &Specification, natural: f64) -> Result<([f64; 2], &'stat
     if from > 0.0 && from < to && to.is_finite() {
         return Ok((ends, unit));
     }
-    let size = unit::FREQUENCY.iter().find(|(name, _)| *name == unit).map_or(1.0, |(_, size)| *size);
-    let [low, high] = [from.min(to), from.max(to)].map(|end| rounded(end / size, 6));
+    let [low, high] = [from.min(to), from.max(to)].map(|end| rounded(end / radians(unit), 6));
     let problem = if from > to && to > 0.0 {
         format!("the lower end comes first: write {low}..{high}{unit}")
     } else {

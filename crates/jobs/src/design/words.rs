@@ -56,8 +56,12 @@ pub(super) fn legible(words: &str) -> String {
 
 /// An angular frequency, rad/s, in a unit.
 pub(super) fn frequency(omega: f64, unit: &'static str) -> String {
-    let size = unit::FREQUENCY.iter().find(|(name, _)| *name == unit).map_or(1.0, |(_, size)| *size);
-    format!("{} {unit}", rounded(omega / size, 4))
+    format!("{} {unit}", rounded(omega / radians(unit), 4))
+}
+
+/// A unit of frequency in rad/s.
+pub(super) fn radians(unit: &str) -> f64 {
+    unit::FREQUENCY.iter().find(|(name, _)| *name == unit).map_or(1.0, |(_, size)| *size)
 }
 
 pub(super) fn parameters(of: &Candidate) -> String {
