@@ -62,6 +62,7 @@ impl Findings<'_> {
         Compared { none, study }
     }
 
+    /// The frequency of the worst run, rad/s.
     pub fn worst_omega(&self) -> f64 {
         self.worst.forcing.frequency.get()
     }
