@@ -6,7 +6,7 @@ use crate::protocol::{Answer, DamperKind, Place};
 use crate::refused::Refused;
 use crate::response::{band, of_all_motions};
 use retune_jobs::Error;
-use retune_jobs::design::Wishes;
+use retune_jobs::design::Specification;
 use retune_model::{Contact, Damper, Measure, NonNegative, Parameter, Surfaces, Unit};
 use retune_study::{Rule, Setting, Study, StudyError};
 use serde::Serialize;
@@ -105,14 +105,15 @@ impl Start {
     /// # Errors
     /// A field is missing or wrong: its name, and what to give.
     pub fn own(structure: &BTreeMap<String, Value>) -> Result<Self, Refused> {
-        let wishes: Wishes = serde_json::from_value(json!(structure)).map_err(Refused::whole)?;
+        let specification: Specification =
+            serde_json::from_value(json!(structure)).map_err(Refused::whole)?;
         let refused = |error: Error| match error {
             Error::Requirement { place, problem } => {
                 Refused::of(&place.trim_start_matches('-').replace('-', "_"), problem)
             }
             other => Refused::whole(other),
         };
-        let requirements = wishes.requirements().map_err(refused)?;
+        let requirements = specification.requirements().map_err(refused)?;
         let (open, walled) = (requirements.tmd().map_err(refused)?, requirements.ssvi().map_err(refused)?);
         let nothing = || Refused::whole("a damper is missing");
         let tmd = open.scene.damper.ok_or_else(nothing)?;

@@ -24,7 +24,6 @@ pub struct Source {
 }
 
 impl Source {
-    /// A source of all rows.
     pub fn new(row: impl Fn(Row) -> Option<Numbers> + Sync + 'static) -> Self {
         Self { applies: Box::new(|_| true), row: Box::new(row) }
     }
@@ -35,22 +34,13 @@ impl Source {
     }
 }
 
-/// A file made again.
 pub enum Made {
     /// A part of it, in words; the fields of `again` are compared with those of `said`.
-    Of {
-        /// Which part.
-        what: &'static str,
-        /// As the file says it.
-        said: Value,
-        /// Made again.
-        again: Value,
-    },
+    Of { what: &'static str, said: Value, again: Value },
     /// It cannot be: the reason.
     Not(String),
 }
 
-/// A row of a table.
 #[derive(Clone, Copy)]
 pub struct Row<'a> {
     pub(crate) names: &'a csv::StringRecord,
@@ -76,9 +66,6 @@ impl<'a> Row<'a> {
 }
 
 /// All rows of a table that `visit` is to see, with their number.
-///
-/// # Errors
-/// The file cannot be read.
 pub fn each_row(path: &Path, mut visit: impl FnMut(usize, Row)) -> Result<(), Error> {
     let refuse =
         |error: csv::Error| retune_store::Error::Input { path: path.to_owned(), source: error.into() };
@@ -94,19 +81,10 @@ pub fn each_row(path: &Path, mut visit: impl FnMut(usize, Row)) -> Result<(), Er
     Ok(())
 }
 
-/// The text of a file of results.
-///
-/// # Errors
-/// It cannot be read.
 pub fn text(place: &Path, name: &str) -> Result<String, Error> {
-    let path = place.join(name);
-    Ok(retune_store::plain::text(&path).map_err(|source| retune_store::Error::Input { path, source })?)
+    Ok(retune_store::plain::text(&place.join(name))?)
 }
 
-/// A JSON file of results.
-///
-/// # Errors
-/// It cannot be read, or is not JSON.
 pub fn json(place: &Path, name: &str) -> Result<Value, Error> {
     serde_json::from_str(&text(place, name)?).map_err(|error| broken(place, name, error.to_string()))
 }

@@ -10,9 +10,6 @@ use serde_json::{Map, Value};
 use std::path::Path;
 
 /// The answer that stands in a file of results: JSON as it is; a table with the units of its columns; of a page, the statements beside it.
-///
-/// # Errors
-/// A file cannot be read.
 pub fn as_json(file: &Path) -> Result<String, Error> {
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     let place = file.parent().unwrap_or(Path::new(""));
@@ -25,17 +22,11 @@ pub fn as_json(file: &Path) -> Result<String, Error> {
 }
 
 /// An answer as indented JSON, as files of results have it.
-///
-/// # Errors
-/// It has no JSON.
 pub fn text(answer: &impl Serialize) -> Result<String, Error> {
     Ok(json_text(answer, "standard output")?.trim_end().to_owned())
 }
 
 /// A table of results.
-///
-/// # Errors
-/// It cannot be read.
 pub fn table(file: &Path) -> Result<Table, Error> {
     let mut table = Table::default();
     each_row(file, |_, row| {
@@ -61,8 +52,7 @@ fn statements(place: &Path) -> Result<Value, Error> {
     const ENDING: &str = "-statements.json";
     let refuse = |source| retune_store::Error::Input { path: place.to_owned(), source };
     let mut all = Map::new();
-    for entry in std::fs::read_dir(place).map_err(refuse)? {
-        let name = entry.map_err(refuse)?.file_name().to_string_lossy().into_owned();
+    for name in retune_store::plain::names(place).map_err(refuse)? {
         if let Some(item) = name.strip_suffix(ENDING) {
             all.insert(item.to_owned(), again::json(place, &name)?);
         }

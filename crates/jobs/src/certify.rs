@@ -7,17 +7,19 @@ mod motions;
 mod records;
 mod walls;
 
-pub use certificate::{Certificate, Short, Verdict, Walls, periodic};
+pub use certificate::{Certificate, Verdict};
+pub(crate) use certificate::{Measured, periodic};
+pub(crate) use walls::Walls;
 
 use crate::again::{Made, json};
 use crate::artefact::{Content, Kind, artefact};
-use crate::job::{Job, open};
-use crate::request::where_results_are;
+use crate::job::{Job, open, where_results_are};
 use crate::resolved::{self, identity_of};
 use crate::{Error, Observer, Request};
 use measure::OtherStarts;
 use retune_model::Damper;
 use retune_store::Extent;
+use retune_store::order::is_same;
 use retune_study::{self as study, Rule, Study};
 use std::path::Path;
 
@@ -65,12 +67,6 @@ pub fn certify_file(request: &Request, watch: &dyn Observer) -> Result<Certifica
     Ok(certificate)
 }
 
-/// Whether both are the same directory.
-fn is_same(one: &Path, other: &Path) -> bool {
-    let [one, other] = [one, other].map(|path| path.canonicalize().ok());
-    one.is_some() && one == other
-}
-
 /// The certificate of the damper in the scene of a study, under the study's objective.
 ///
 /// # Errors
@@ -81,9 +77,9 @@ pub fn certify(study: &Study) -> Result<Certificate, Error> {
 
 /// A certificate of the damper of a study that has all but the value between other walls, with that too.
 pub(crate) fn complete(study: &Study, certificate: Certificate) -> Certificate {
-    let walls = walls::other_walls(study, &certificate);
-    let records = records::other_records(study, &certificate);
-    certificate.with_walls(walls).with_records(records)
+    let (own, sensitivity) = (certificate.value, &certificate.measured.sensitivity);
+    let walls = walls::other_walls(study, own, sensitivity, certificate.strikes());
+    Certificate { walls, records: records::other_records(study, own), ..certificate }
 }
 
 /// The certificate of the damper of a study, made again.
@@ -101,9 +97,6 @@ pub(crate) fn again(study: &Study, said: serde_json::Value) -> Made {
 }
 
 /// The same as far as the verdict goes: other starts than rest are not looked at where it is decided without, nor are other walls.
-///
-/// # Errors
-/// As [`certify`].
 pub fn judge(study: &Study) -> Result<Certificate, Error> {
     measure::measure(study, damper_of(study)?, OtherStarts::WhereTheyDecide)
 }
@@ -111,19 +104,12 @@ pub fn judge(study: &Study) -> Result<Certificate, Error> {
 fn damper_of(study: &Study) -> Result<&Damper, Error> {
     study.begins_at_rest().map_err(Error::rule(study))?;
     study.scene.damper.as_ref().ok_or_else(|| {
-        let rule = Rule::NotAllowed {
-            field: "scene.damper".to_owned(),
-            value: "none".to_owned(),
-            allowed: "a damper, for that is what is certified",
-        };
-        Error::rule(study)(rule)
+        let allowed = "a damper, for that is what is certified";
+        Error::rule(study)(Rule::not_allowed("scene.damper", "none", allowed))
     })
 }
 
 /// Refuses the results of a search in `out` whose design breaks the limits of its study.
-///
-/// # Errors
-/// [`Error::Infeasible`].
 pub fn check_limits_in(out: &Path, study: &str) -> Result<(), Error> {
     let text = std::fs::read_to_string(out.join(FILE)).unwrap_or_default();
     let said: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();

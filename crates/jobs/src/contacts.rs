@@ -57,9 +57,6 @@ impl Known {
 
 impl Contacts {
     /// Of a run of a scene; none if it touches no wall.
-    ///
-    /// # Errors
-    /// The run fails.
     pub fn of(scene: &Scene, window: Window, settings: &Settings) -> Result<Option<Self>, SolverError> {
         let Some(damper) = scene.damper.filter(|damper| damper.contact.is_some()) else { return Ok(None) };
         let system = Coupled::new(&scene.primary, &scene.forcing, &damper);
@@ -87,7 +84,6 @@ impl Contacts {
         named.into_iter().filter_map(|(name, wall)| Some((name, wall.as_ref()?)))
     }
 
-    /// A sentence for each wall.
     pub fn words(&self) -> Vec<String> {
         self.walls().map(|(name, wall)| format!("{name}: {}", wall.words())).collect()
     }
@@ -107,10 +103,9 @@ impl Wall {
     fn wide(&self) -> Option<String> {
         let radius =
             self.known.map(|known| known.radius).filter(|radius| self.contact_radius > WIDE * radius)?;
+        let [own, radius] = [self.contact_radius, radius].map(millimetres);
         Some(format!(
-            "the contact area has a radius of {}, more than a third of R = {}: Hertz's law holds for small areas",
-            millimetres(self.contact_radius),
-            millimetres(radius)
+            "the contact area has a radius of {own}, more than a third of R = {radius}: Hertz's law holds for small areas"
         ))
     }
 
@@ -118,45 +113,38 @@ impl Wall {
     fn yields(&self) -> Option<String> {
         let strength =
             self.known?.strength.filter(|strength| self.contact_pressure > HERTZ_YIELD * strength)?;
+        let times = rounded(self.contact_pressure / strength, 3);
+        let [own, strength] = [self.contact_pressure, strength].map(pressure);
         Some(format!(
-            "the pressure of {} is {} times the yield strength of {}: at {HERTZ_YIELD} times that, yield begins below the \
-             surface (Tresca and von Mises, nu = 0.3): Hertz's law holds for elastic contacts",
-            pressure(self.contact_pressure),
-            rounded(self.contact_pressure / strength, 3),
-            pressure(strength)
+            "the pressure of {own} is {times} times the yield strength of {strength}: at {HERTZ_YIELD} times that, yield begins below the \
+             surface (Tresca and von Mises, nu = 0.3): Hertz's law holds for elastic contacts"
         ))
     }
 
     /// That it is not quasi-static.
     fn fast(&self) -> Option<String> {
         let wave = self.known?.wave.filter(|wave| self.shortest < WAVES * wave)?;
+        let [own, wave] = [self.shortest, wave].map(|time| format!("{} ms", rounded(1e3 * time, 3)));
         Some(format!(
-            "the shortest contact lasts {}, less than {WAVES} times the {} of a wave through the damper and back: Hertz's law holds for quasi-static contacts",
-            milliseconds(self.shortest),
-            milliseconds(wave)
+            "the shortest contact lasts {own}, less than {WAVES} times the {wave} of a wave through the damper and back: Hertz's law holds for quasi-static contacts"
         ))
     }
 
     fn words(&self) -> String {
         let Self { impacts, impact_speed, indentation, contact_radius, contact_pressure, .. } = *self;
-        let lasting = if self.longest > 0.0 {
-            let [shortest, longest] = [self.shortest, self.longest].map(|time| rounded(1e3 * time, 3));
-            if shortest == longest {
-                format!("{shortest} ms long, ")
-            } else {
-                format!("{shortest} to {longest} ms long, ")
-            }
-        } else {
-            String::new()
+        let [shortest, longest] = [self.shortest, self.longest].map(|time| rounded(1e3 * time, 3));
+        let lasting = match self.longest > 0.0 {
+            true if shortest == longest => format!("{shortest} ms long, "),
+            true => format!("{shortest} to {longest} ms long, "),
+            false => String::new(),
         };
         let impacts = format!("{} at up to {} m/s", counted(impacts, "impact"), rounded(impact_speed, 3));
         if self.known.is_none() {
             return format!("{impacts} on a rigid wall");
         }
+        let [deep, radius] = [indentation, contact_radius].map(millimetres);
         format!(
-            "{impacts}, {lasting}{} deep, on a radius of {}, pressure {}",
-            millimetres(indentation),
-            millimetres(contact_radius),
+            "{impacts}, {lasting}{deep} deep, on a radius of {radius}, pressure {}",
             pressure(contact_pressure)
         )
     }
@@ -164,10 +152,6 @@ impl Wall {
 
 fn millimetres(length: f64) -> String {
     format!("{} mm", rounded(1e3 * length, 3))
-}
-
-fn milliseconds(time: f64) -> String {
-    format!("{} ms", rounded(1e3 * time, 3))
 }
 
 fn pressure(value: f64) -> String {
@@ -199,15 +183,8 @@ impl Powers {
     pub fn words(&self) -> Option<String> {
         let [structure, damper, impacts] = self.parts();
         let total = structure + damper + impacts;
-        let share = |part: f64| rounded(100.0 * part / total, 3);
-        (total > 0.0).then(|| {
-            format!(
-                "{} W on average: {} % in c1, {} % in c2, {} % in impacts",
-                rounded(total, 4),
-                share(structure),
-                share(damper),
-                share(impacts)
-            )
-        })
+        let [c1, c2, impacts] = self.parts().map(|part| rounded(100.0 * part / total, 3));
+        let on_average = format!("{} W on average", rounded(total, 4));
+        (total > 0.0).then(|| format!("{on_average}: {c1} % in c1, {c2} % in c2, {impacts} % in impacts"))
     }
 }

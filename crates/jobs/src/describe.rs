@@ -25,14 +25,10 @@ pub fn fronts(plan: &FrontsPlan) -> String {
 /// Describes a study.
 pub fn study(study: &Study) -> String {
     let primary = study.scene.primary;
-    let mut lines = vec![format!(
-        "study {}: k1 = {} N/m, {}; maxima from t0 = {} s to T = {} s",
-        study.name(),
-        primary.stiffness.get(),
-        forced(&study.scene.forcing),
-        study.window.t0.get(),
-        study.window.end.get(),
-    )];
+    let (name, k1, forced) = (study.name(), primary.stiffness.get(), forced(&study.scene.forcing));
+    let (t0, end) = (study.window.t0.get(), study.window.end.get());
+    let mut lines =
+        vec![format!("study {name}: k1 = {k1} N/m, {forced}; maxima from t0 = {t0} s to T = {end} s")];
     match study.scene.damper {
         None => lines.push("no damper".to_owned()),
         Some(damper) => {
@@ -49,7 +45,6 @@ pub fn study(study: &Study) -> String {
     lines.join("\n  ")
 }
 
-/// The law of the walls.
 fn walls(contact: &Contact) -> String {
     let surfaces = match contact {
         Contact::Hertz(surfaces) => surfaces,
@@ -104,7 +99,6 @@ fn steps(study: &Study) -> Option<String> {
     ))
 }
 
-/// The forcing in words.
 pub(crate) fn forced(forcing: &Forcing) -> String {
     let at = format!("at omega = {} rad/s", forcing.frequency.get());
     match forcing.source {
@@ -176,22 +170,15 @@ fn given(History { of, course }: &History) -> String {
     }
 }
 
-/// Where the refinements of a search start.
 fn starts(search: &Search) -> String {
     let mut from = Vec::new();
     if let Some((variables, grid)) = &search.surf {
-        from.push(format!(
-            "a grid of {} over {}",
-            counted(grid.len() as u64, "point"),
-            joined(variables, ", ")
-        ));
+        let points = counted(grid.len() as u64, "point");
+        from.push(format!("a grid of {points} over {}", joined(variables, ", ")));
     }
     if let Some((global, ..)) = &search.global {
-        from.push(format!(
-            "a global search ({}, {})",
-            counted(global.samples.into(), "design"),
-            counted(global.searches as u64, "CMA-ES search")
-        ));
+        let searches = counted(global.searches as u64, "CMA-ES search");
+        from.push(format!("a global search ({}, {searches})", counted(global.samples.into(), "design")));
     }
     if !search.given.is_empty() {
         from.push(counted(search.given.len() as u64, "given design"));
@@ -206,17 +193,13 @@ fn goal(study: &Study) -> Vec<String> {
     let omega = study.scene.forcing.frequency.get();
     let name = study.quantity().name();
     let steady = objective.response == Response::Steady;
-    let how = match (objective.response, objective.omega) {
-        (Response::Window, Some(band)) => {
-            format!("in the window, on {} and refined at their peaks", counted(band.samples as u64, "sample"))
-        }
-        (Response::Settled, Some(band)) => {
-            format!("settled, on {} and refined at their peaks", counted(band.samples as u64, "sample"))
-        }
-        (Response::Window, None) => "in the window".to_owned(),
-        (Response::Settled, None) => "settled".to_owned(),
-        (Response::Motions, _) => "over all stable motions that are found".to_owned(),
-        (Response::Steady, _) => "steady, exact".to_owned(),
+    let band = objective.omega.map(|band| counted(band.samples as u64, "sample"));
+    let band = band.map_or(String::new(), |samples| format!(", on {samples} and refined at their peaks"));
+    let how = match objective.response {
+        Response::Window => format!("in the window{band}"),
+        Response::Settled => format!("settled{band}"),
+        Response::Motions => "over all stable motions that are found".to_owned(),
+        Response::Steady => "steady, exact".to_owned(),
     };
     if !objective.sum.is_empty() {
         lines.push(format!("for the {}", over(&objective, omega)));
@@ -230,15 +213,13 @@ fn goal(study: &Study) -> Vec<String> {
         && objective.restitution.is_none()
         && objective.omega.is_none()
     {
-        if steady {
-            lines.push(format!("for the steady {name}"));
-        } else if objective.response == Response::Settled {
-            lines.push(format!("for the settled {name}"));
-        } else if objective.response == Response::Motions {
-            lines.push(format!("for the largest {name} of all stable motions that are found"));
-        } else if study.quantity() != Measure::Energy {
-            lines.push(format!("for {name} in the window"));
-        }
+        lines.extend(match objective.response {
+            Response::Steady => Some(format!("for the steady {name}")),
+            Response::Settled => Some(format!("for the settled {name}")),
+            Response::Motions => Some(format!("for the largest {name} of all stable motions that are found")),
+            Response::Window if study.quantity() == Measure::Energy => None,
+            Response::Window => Some(format!("for {name} in the window")),
+        });
     } else {
         let words = over(&objective, omega).replacen("worst over", &format!("worst {name} over"), 1);
         lines.push(format!("for the {words}, {how}"));

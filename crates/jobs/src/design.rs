@@ -4,11 +4,8 @@
 mod answer;
 mod candidate;
 mod comparison;
-mod curves;
-mod drawing;
 mod modes;
 mod page;
-mod question;
 mod reading;
 mod requirements;
 mod ssvi;
@@ -17,12 +14,12 @@ mod tmd;
 mod typed;
 mod words;
 
-pub use candidate::{Candidate, What};
-pub use comparison::{Comparison, Cost};
+use comparison::Comparison;
 pub use modes::structure;
-pub use requirements::{Dampers, Driving, Requirements, Wall, Wish};
-pub use tmd::Formula;
-pub use typed::{Typed, Wishes};
+use requirements::Dampers;
+pub use requirements::Requirements;
+use tmd::Formula;
+pub use typed::{Specification, Typed};
 
 use crate::artefact::{Content, Kind, artefact};
 use crate::job::{Done, Job, Made};
@@ -92,7 +89,7 @@ pub fn design(
             directory.write_json(&format!("studies-{}.json", study.name()), &study.resolved())?;
         }
         let answer = answer::answer(requirements, &compared, &job.out);
-        let question = question::question(requirements).join("\n");
+        let question = words::question(requirements).join("\n");
         directory.write("answer.txt", &format!("{question}\n\n{answer}\n"))?;
         pages::write(&page::page(requirements, &compared), directory)?;
         Ok(Made { answer: compared, report: format!("\n{answer}"), parts: Vec::new() })

@@ -1,12 +1,11 @@
 //! Tables of designs in the form of the paper's Table 2, as `table2`, `retention` and `design` make them.
 
 use crate::again::Source;
-use crate::columns;
 use crate::needs::{Largest, TOLD};
 use crate::resolved::Resolved;
 use crate::summary::TunedDamper;
-use crate::tune::{Optimum, table2_header, table2_row};
-use crate::{Error, resampled};
+use crate::tune::{Optimum, objective, table2_header, table2_row};
+use crate::{Error, columns};
 use retune_model::{Measure, Parameter};
 use retune_report::cells;
 use retune_report::table::Table;
@@ -29,12 +28,11 @@ pub struct Designs {
 
 /// A row of the table.
 #[derive(Clone, Debug, Serialize)]
+#[expect(missing_docs, reason = "their names say it")]
 pub struct Row {
     /// The entry in the column of its own.
     pub label: String,
-    /// The name of the damper.
     pub damper: String,
-    /// The damper itself.
     #[serde(flatten)]
     pub found: TunedDamper,
     /// The E1max that the paper prints for it, J.
@@ -58,31 +56,22 @@ pub struct Row {
 impl Row {
     /// A row with the design that a search has found.
     pub fn of_optimum(label: &str, damper: &str, study: &Study, optimum: &Optimum) -> Self {
-        let found = optimum.found();
         Self {
             label: label.to_owned(),
             damper: damper.to_owned(),
-            found: found.damper,
+            found: optimum.damper,
             printed: None,
-            e1_max: found.e1_max,
+            e1_max: optimum.value(),
             none: study.energy_without_damper(),
             verdict: optimum.verdict(),
             reason: optimum.reason().to_owned(),
             needs: optimum.needs.as_ref().map(|needs| needs.damper),
         }
     }
-
-    /// By how many times E1max is smaller than without a damper.
-    fn reduction(&self) -> f64 {
-        self.none / self.e1_max
-    }
 }
 
 impl Designs {
     /// Writes the table as `name.csv` and `name.txt`.
-    ///
-    /// # Errors
-    /// A file cannot be written.
     pub fn write(&self, name: &str, results: &Directory) -> Result<(), Error> {
         results.write(&format!("{name}.csv"), &self.table().csv())?;
         Ok(results.write(&format!("{name}.txt"), &(self.text() + "\n"))?)
@@ -115,24 +104,19 @@ impl Designs {
     pub fn text(&self) -> String {
         let any_printed = self.rows.iter().any(|row| row.printed.is_some());
         let printed = |text: &str| if any_printed { format!("{text:<10}") } else { String::new() };
+        let (head, column) = (table2_header(), self.column);
         let mut lines = vec![format!(
-            "{:<14}{:<84}{}{:<11}{:<8}verdict",
-            self.column,
-            table2_header(),
+            "{column:<14}{head:<84}{}{:<11}{:<8}verdict",
             printed("printed"),
             "E1max, J",
-            "none /",
+            "none /"
         )];
         for row in &self.rows {
-            lines.push(format!(
-                "{:<14}{:<84}{}{:<11}{:<8.2}{}",
-                row.label,
-                table2_row(&row.damper, &row.found),
-                printed(&row.printed.map(short).unwrap_or_default()),
-                short(row.e1_max),
-                row.reduction(),
-                row.verdict
-            ));
+            let Row { label, damper, found, e1_max, verdict, .. } = row;
+            let (printed, damper) =
+                (printed(&row.printed.map(short).unwrap_or_default()), table2_row(damper, found));
+            let (e1_max, times) = (short(*e1_max), row.none / e1_max);
+            lines.push(format!("{label:<14}{damper:<84}{printed}{e1_max:<11}{times:<8.2}{verdict}"));
         }
         lines.push(String::new());
         for Row { label, damper, found, needs, reason, .. } in &self.rows {
@@ -160,9 +144,6 @@ impl Designs {
 
 /// E1max of a row with a design, computed again by the objective of the study of its damper: on the samples that the plan names, or else
 /// on those of the study.
-///
-/// # Errors
-/// The input of the results cannot be read.
 pub(crate) fn again(place: &Path, _name: &str) -> Result<Source, Error> {
     let resolved = Resolved::read(place)?;
     let samples = resolved.plan["samples"].as_u64().map(|samples| samples as usize);
@@ -171,7 +152,7 @@ pub(crate) fn again(place: &Path, _name: &str) -> Result<Source, Error> {
         let (_, study) = studies.iter().find(|(name, _)| name == row.text("damper"))?;
         let at = row.design().filter(|_| !row.number("E1max").is_nan())?;
         let found = match samples {
-            Some(samples) => resampled::value(study, samples, &at),
+            Some(samples) => objective::value(study, samples, &at),
             None => study.scene_at(&at).and_then(|scene| study.energy(&scene)),
         };
         Some(vec![("E1max".to_owned(), found.unwrap_or(f64::INFINITY))])

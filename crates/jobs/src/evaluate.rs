@@ -1,15 +1,13 @@
 //! `evaluate`: the objective of a study as a service, for optimisers outside of Retune.
 
-mod input;
-
 use crate::tune::objective::objective;
 use crate::{Error, Request};
-use input::Line;
 use rayon::prelude::*;
 use retune_optim::{DesignObjective, Evaluation, Parameter, Unusable};
 use retune_study::Study;
 use serde_json::json;
 use std::io::{BufRead, ErrorKind, Write};
+use std::sync::mpsc::{Receiver, sync_channel};
 use thiserror::Error;
 
 /// The protocol, for `--help`.
@@ -40,27 +38,14 @@ const TOLD: u64 = 100;
 
 /// Why a line has no value.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[expect(missing_docs, reason = "its words say what each is and holds")]
 pub enum LineError {
-    /// Too few numbers, or too many.
     #[error("give one number for each of {}; found {found}", words(.wanted))]
-    Count {
-        /// Their number.
-        found: usize,
-        /// The tuned parameters.
-        wanted: Vec<Parameter>,
-    },
-    /// Not a number.
+    Count { found: usize, wanted: Vec<Parameter> },
     #[error("{variable}: \"{}\" is not a number", shown(.text))]
-    Number {
-        /// The parameter.
-        variable: Parameter,
-        /// The text as given.
-        text: String,
-    },
-    /// The line is too long.
-    #[error("the line is longer than {} bytes", input::MOST)]
+    Number { variable: Parameter, text: String },
+    #[error("the line is longer than {} bytes", MOST_BYTES)]
     Long,
-    /// The design has no value.
     #[error(transparent)]
     Unusable(#[from] Unusable),
 }
@@ -77,10 +62,9 @@ fn shown(text: &str) -> String {
 }
 
 /// The input of designs and the outputs.
+#[expect(missing_docs, reason = "their names say it")]
 pub struct Streams<'a, I> {
-    /// Designs, one per line.
     pub input: I,
-    /// One answer for each.
     pub answers: &'a mut (dyn Write + Send),
     /// Receives a message for each line without a value.
     pub complaints: &'a mut (dyn FnMut(&str) + Send),
@@ -108,7 +92,7 @@ fn answer<I: BufRead + Send + 'static>(
     Streams { input, answers, complaints }: Streams<'_, I>,
 ) -> Result<(), Error> {
     let together = rayon::current_num_threads();
-    let lines = input::lines(input, together);
+    let lines = lines(input, together);
     let (mut count, mut failed) = (0, 0);
     while let Ok(first) = lines.recv() {
         let refuse = |source| retune_store::Error::Input { path: "standard input".into(), source };
@@ -191,4 +175,82 @@ fn value(objective: &DesignObjective, line: &Line) -> Result<Evaluation, LineErr
     let design = variables.iter().zip(&texts).map(number).collect::<Result<Vec<f64>, _>>()?;
     let scene = objective.scene(&design)?;
     Ok(objective.evaluate(&scene, f64::INFINITY)?)
+}
+
+const MOST_BYTES: usize = 4096;
+
+#[derive(Debug, PartialEq)]
+enum Line {
+    /// Its text; invalid UTF-8 is replaced.
+    Text(String),
+    /// One that is longer than [`MOST_BYTES`]; its text is not kept.
+    Long,
+}
+
+/// The lines of an input, at most `ahead` of them read in advance.
+fn lines(mut input: impl BufRead + Send + 'static, ahead: usize) -> Receiver<std::io::Result<Line>> {
+    let (sender, receiver) = sync_channel(ahead);
+    let read = move || {
+        while let Some(line) = next(&mut input).transpose() {
+            let broken = line.is_err();
+            if sender.send(line).is_err() || broken {
+                break; // the receiver is gone
+            }
+        }
+    };
+    // The thread is not joined: when the answers are no longer read, it may still wait for a line.
+    let started = std::thread::Builder::new().name("input".to_owned()).spawn(read);
+    if let Err(error) = started {
+        let (sender, receiver) = sync_channel(1);
+        let _ = sender.send(Err(std::io::Error::other(error)));
+        return receiver;
+    }
+    receiver
+}
+
+/// The next line; `None` at the end.
+fn next(input: &mut impl BufRead) -> std::io::Result<Option<Line>> {
+    let mut line = Vec::new();
+    let (mut any, mut long) = (false, false);
+    loop {
+        let there = input.fill_buf()?;
+        if there.is_empty() {
+            break;
+        }
+        any = true;
+        let end = there.iter().position(|byte| *byte == b'\n');
+        let part = &there[..end.unwrap_or(there.len())];
+        long |= line.len() + part.len() > MOST_BYTES;
+        if !long {
+            line.extend_from_slice(part);
+        }
+        let used = part.len() + usize::from(end.is_some());
+        input.consume(used);
+        if end.is_some() {
+            break;
+        }
+    }
+    let text = || Line::Text(String::from_utf8_lossy(&line).into_owned());
+    Ok(any.then(|| if long { Line::Long } else { text() }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::BufReader;
+
+    #[test]
+    fn contract_lines_are_taken_apart_and_long_ones_not_kept() {
+        let most = "1".repeat(MOST_BYTES);
+        let input = format!("1 2\n\n{most}\n{most}1\nlast");
+        for capacity in [1, 7, 1 << 16] {
+            let mut input = BufReader::with_capacity(capacity, input.as_bytes());
+            let mut lines = Vec::new();
+            while let Some(line) = next(&mut input).expect("readable") {
+                lines.push(line);
+            }
+            let text = |text: &str| Line::Text(text.to_owned());
+            assert_eq!(lines, [text("1 2"), text(""), text(&most), Line::Long, text("last")]);
+        }
+    }
 }

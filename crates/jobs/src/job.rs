@@ -2,34 +2,27 @@
 //! published and reported. Every kind of job does these steps here.
 
 use crate::artefact::Kind;
-use crate::request::where_results_are;
-use crate::resolved::{self, Resolved};
-use crate::{Error, Observer, Request};
+use crate::resolved::Resolved;
+use crate::{Error, Observer, resolved};
+use retune_store::plain::names;
 use retune_store::{Begin, Directory, Extent, Identity, Order, manifest};
-use retune_study::{Solver, Study, is_built_in};
+use retune_study::{Solver, Study, found_in, is_built_in, name_from};
 use std::path::{Path, PathBuf};
 
-/// A job, ready to be done.
 pub struct Job {
-    /// Its kind.
     pub kind: &'static Kind,
-    /// The directory of its results.
     pub out: PathBuf,
-    /// The request for them.
     pub order: Order,
     /// The file that holds the complete input, and its text.
     pub input: (&'static str, String),
     /// The file without which its results are not complete.
     pub answer: String,
-    /// The solvers of its studies.
     pub solvers: Vec<Solver>,
     /// The beginning of the names of its files, if it makes a part of the results and leaves the others as they are.
     pub only: Option<String>,
 }
 
-/// What a job has made.
 pub struct Made<T> {
-    /// The result.
     pub answer: T,
     /// The last lines on screen, if any.
     pub report: String,
@@ -48,9 +41,6 @@ pub enum Done<T> {
 
 impl Job {
     /// The job of a kind on one study.
-    ///
-    /// # Errors
-    /// Serialisation fails, which no known study causes.
     pub fn of_study(kind: &'static Kind, study: &Study, out: &Path, order: &Order) -> Result<Self, Error> {
         let input = (resolved::ONE, resolved::study_text(study)?);
         let (out, order, answer) = (out.to_owned(), order.clone(), kind.answer.to_owned());
@@ -58,9 +48,6 @@ impl Job {
     }
 
     /// The job of a kind on several studies: each with the name of its damper, under a plan.
-    ///
-    /// # Errors
-    /// Serialisation fails, which no known study causes.
     pub fn of_studies<'a>(
         kind: &'static Kind,
         request: &Request,
@@ -73,15 +60,11 @@ impl Job {
         Ok(Self { kind, out, order, input, answer: kind.answer.to_owned(), solvers, only: None })
     }
 
-    /// The identity of its results.
     pub fn identity(&self) -> Identity {
         Identity::of(&self.input.1)
     }
 
     /// Does the work and publishes its results. The work can be resumed until the directory is finished.
-    ///
-    /// # Errors
-    /// The directory cannot be opened or written to, or `work` fails.
     pub fn make<T>(
         &self,
         watch: &dyn Observer,
@@ -105,9 +88,6 @@ impl Job {
     }
 
     /// Does the whole job on the threads of its request and reports its end to the observer; `work` may not report it.
-    ///
-    /// # Errors
-    /// As [`Self::make`].
     pub fn run<T: Send>(
         &self,
         request: &Request,
@@ -141,9 +121,6 @@ impl Job {
 }
 
 /// Opens a directory of results and reports it to the observer.
-///
-/// # Errors
-/// As [`Directory::open`].
 pub fn open(
     path: &Path,
     order: &Order,
@@ -158,4 +135,62 @@ pub fn open(
     }
     watch.resumable();
     Ok(directory)
+}
+
+/// The options of a job.
+#[derive(Clone, Debug, Default)]
+#[expect(missing_docs, reason = "their names say it")]
+pub struct Request {
+    pub study: PathBuf,
+    /// Directory of the results; by default that of the job.
+    pub out: Option<PathBuf>,
+    /// Number of threads; by default all cores. The results are the same for any number.
+    pub threads: Option<u16>,
+    pub begin: Begin,
+    pub replace: bool,
+}
+
+impl Request {
+    /// A request for a study file, with the job's directory of results and all cores.
+    pub fn new(study: &Path) -> Self {
+        Self { study: study.to_owned(), ..Self::default() }
+    }
+
+    /// The order to open a directory of results for `command`.
+    pub fn order(&self, command: &'static str) -> Order {
+        Order { command, study: self.study.clone(), begin: self.begin, replace: self.replace }
+    }
+
+    /// The directory of the results of one study: by default `results/` and its name.
+    pub fn out_of(&self, study: &Study) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| Path::new("results").join(study.name()))
+    }
+
+    /// The directory of the results of a study of several dampers: by default `results/` and the name of its file.
+    pub fn out_of_file(&self) -> PathBuf {
+        let stem = self.study.file_stem().unwrap_or_default();
+        self.out.clone().unwrap_or_else(|| Path::new("results").join(name_from(&stem.to_string_lossy())))
+    }
+
+    /// The same with the directory of results along a parameter: by default `results/<kind>-<study>-<rest>`, of a design that a search found
+    /// `results/<kind>-<study>-tuned-<rest>`.
+    pub fn placed(&self, kind: &str, study: &Study, rest: &str) -> Result<Self, Error> {
+        let tuned = if found_in(&self.study)?.is_some() { "-tuned" } else { "" };
+        let out = || Path::new("results").join(format!("{kind}-{}{tuned}-{rest}", study.name()));
+        Ok(Self { out: Some(self.out.clone().unwrap_or_else(out)), ..self.clone() })
+    }
+
+    /// Runs `work` on the threads of the request.
+    pub fn on_threads<T: Send>(&self, work: impl FnOnce() -> Result<T, Error> + Send) -> Result<T, Error> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads.unwrap_or(0).into()).build()?;
+        pool.install(work)
+    }
+}
+
+/// A message with the directory of the results and their list.
+pub fn where_results_are(out: &Path) -> Result<String, Error> {
+    let refuse = |source| retune_store::Error::Output { path: PathBuf::from(out), source };
+    let mut names = names(out).map_err(refuse)?;
+    names.retain(|name| !name.starts_with('.'));
+    Ok(format!("results in {}: {}", out.display(), names.join(" ")))
 }

@@ -40,35 +40,33 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub mod again;
+mod again;
 pub mod amount;
 pub mod answer;
 pub mod artefact;
 pub mod branches;
 pub mod certify;
-pub mod columns;
-pub mod contacts;
+mod columns;
+mod contacts;
 pub mod describe;
 pub mod design;
 pub mod designs;
-pub mod error;
+mod error;
 pub mod evaluate;
 pub mod fronts;
-pub mod job;
+mod job;
 pub mod losses;
 pub mod methods;
-pub mod needs;
-pub mod observer;
+mod needs;
+mod observer;
 mod pages;
 pub mod paper;
 pub mod parts;
 pub mod prove;
-pub mod request;
-pub mod resampled;
 pub mod resolved;
 pub mod retention;
 pub mod rows;
-pub mod searches;
+mod searches;
 pub mod simulate;
 pub mod summary;
 pub mod sweep;
@@ -77,6 +75,5 @@ pub mod tune;
 pub mod verify;
 
 pub use error::Error;
-pub use job::Done;
+pub use job::{Done, Request};
 pub use observer::{Observer, Progress, Silent};
-pub use request::Request;

@@ -51,12 +51,12 @@ pub fn losses(request: &Request, watch: &dyn Observer) -> Result<Done<Losses>, E
             if let (Some(optimize), Some((.., before))) = (&mut alone.optimize, designs.last()) {
                 optimize.starts.push(clipped(before, optimize));
             }
-            let found = searches.tune(&alone, &format!("restitution-{e}"))?.found().damper.design;
+            let found = searches.tune(&alone, &format!("restitution-{e}"))?.damper.design;
             designs.push((Tuning::Anew, *e, found));
         }
         let lossless = designs[0].2; // the first restitution is 1
         watch.log("\nall restitutions at once")?;
-        let hedged = searches.tune(&study, "all")?.found().damper.design;
+        let hedged = searches.tune(&study, "all")?.damper.design;
         for (tuning, design) in
             [(Tuning::Paper, papers()?), (Tuning::Lossless, lossless), (Tuning::Hedged, hedged)]
         {

@@ -89,28 +89,25 @@ fn again(place: &Path, _name: &str) -> Result<Source, Error> {
 
 /// The name of the study of a row.
 fn scene_of(row: Row<'_>) -> &str {
-    if row.text("scene").is_empty() { row.text("difficulty") } else { row.text("scene") }
+    row.text(if is_of_atlas(row) { "difficulty" } else { "scene" })
 }
 
 /// The columns that are computed again.
 fn columns(row: Row) -> [&'static str; 4] {
-    if row.text("scene").is_empty() {
-        ["error", "impacts", "expected_impacts", "evaluations"]
-    } else {
-        ["E1max", "impacts", "expected_impacts", "evaluations"]
-    }
+    [if is_of_atlas(row) { "error" } else { "E1max" }, "impacts", "expected_impacts", "evaluations"]
+}
+
+/// Whether a row is one of the atlas of failures, which names its scene by its difficulty.
+fn is_of_atlas(row: Row) -> bool {
+    row.text("scene").is_empty()
 }
 
 /// The numbers of these columns; none where the row is of no method, infinite where the run fails.
 fn numbers(plan: &Value, row: Row, study: &Study) -> Option<Vec<f64>> {
     let way = &plan["ways"][row.text("method")];
     let text = |name: &str| way[name].as_str().unwrap_or_else(|| row.text(name)).to_owned();
-    let method: Method = serde_json::from_value(Value::from(if way.is_null() {
-        row.text("method").to_owned()
-    } else {
-        text("method")
-    }))
-    .ok()?;
+    let method = if way.is_null() { row.text("method").to_owned() } else { text("method") };
+    let method: Method = serde_json::from_value(method.into()).ok()?;
     let contacts = text("contacts");
     let contacts =
         if contacts == "exact" { Contacts::Located } else { serde_json::from_value(contacts.into()).ok()? };
@@ -121,15 +118,14 @@ fn numbers(plan: &Value, row: Row, study: &Study) -> Option<Vec<f64>> {
     let expected = run(scene, window, &reference)?;
     let found = run(scene, window, &settings(method, contacts, setting, max_steps));
     let Some((found, impacts)) = found else {
-        let none = if row.text("scene").is_empty() { 0.0 } else { f64::INFINITY };
-        let error = if row.text("scene").is_empty() { f64::NAN } else { f64::INFINITY };
+        let (error, none) = if is_of_atlas(row) { (f64::NAN, 0.0) } else { (f64::INFINITY, f64::INFINITY) };
         return Some(vec![error, none, expected.1 as f64, none]);
     };
     let states = [found.final_state, expected.0.final_state];
     let energies = [found.e1_max.value, expected.0.e1_max.value];
     let [e1, state] = errors(energies, states, scene.forcing.frequency.get());
     // The atlas prints its errors to three digits.
-    let first = if row.text("scene").is_empty() {
+    let first = if is_of_atlas(row) {
         format!("{:.2e}", e1.max(state)).parse().unwrap_or(f64::NAN)
     } else {
         found.e1_max.value
@@ -137,7 +133,6 @@ fn numbers(plan: &Value, row: Row, study: &Study) -> Option<Vec<f64>> {
     Some(vec![first, impacts as f64, expected.1 as f64, evaluations(method, &found) as f64])
 }
 
-/// A run, and its touch-downs.
 fn run(scene: &Scene, window: Window, settings: &Settings) -> Option<(Response, usize)> {
     let response = simulate(scene, window, settings).ok()?;
     Some((response, touch_downs(scene, window, settings).ok()?.len()))

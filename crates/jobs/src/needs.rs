@@ -27,12 +27,10 @@ pub const TOLD: [Measure; 5] = [
 /// What a design needs, and what others need.
 #[derive(Clone, Debug, Serialize)]
 pub struct Needs {
-    /// The design.
     pub damper: Largest,
     /// What its contacts are like in the run with the largest contact force, whole, from rest on; none if it touches no wall.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contacts: Option<Contacts>,
-    /// No damper.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub none: Option<Largest>,
     /// The best damper of the same mass without walls, for the same objective, whatever the limits and bounds of the study.
@@ -44,20 +42,17 @@ pub struct Needs {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Largest(pub retune_optim::Needs);
 
-/// The best damper without walls.
 #[derive(Clone, Debug, Serialize)]
 pub struct Linear {
     /// Its spring, N/m.
     pub k2: f64,
     /// Its damping, N·s/m.
     pub c2: f64,
-    /// The value of the objective.
     #[serde(flatten)]
     value: Amount,
     /// Why the search could not come to it, where it is better than what it came to.
     #[serde(skip_serializing_if = "Option::is_none")]
     better_but: Option<String>,
-    /// What it needs.
     pub needs: Largest,
 }
 
@@ -146,13 +141,9 @@ impl Largest {
 
     /// The motion of the structure and its force on the ground.
     fn structure_words(&self) -> String {
-        let of = |measure| self.words(measure);
-        format!(
-            "moves by {}, accelerates by {} and loads the ground with {}",
-            of(Measure::Displacement),
-            of(Measure::Acceleration),
-            of(Measure::GroundForce)
-        )
+        let of = [Measure::Displacement, Measure::Acceleration, Measure::GroundForce];
+        let [x1, a1, force] = of.map(|measure| self.words(measure));
+        format!("moves by {x1}, accelerates by {a1} and loads the ground with {force}")
     }
 
     /// What the objective looks at, where it is less.
@@ -233,12 +224,9 @@ impl Needs {
                 let linear = self.linear.as_ref().map_or(String::new(), |linear| {
                     format!(", {} with the best TMD", linear.needs.sized(measure))
                 });
-                lines.push(format!(
-                    "it raises {} from {} (no damper{linear}) to {}",
-                    measure.words(),
-                    sized(measure, without),
-                    sized(measure, own)
-                ));
+                let ([from, to], words) =
+                    ([without, own].map(|value| sized(measure, value)), measure.words());
+                lines.push(format!("it raises {words} from {from} (no damper{linear}) to {to}"));
             }
         }
         lines

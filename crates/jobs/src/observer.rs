@@ -4,35 +4,30 @@ use crate::Error;
 use serde_json::Value;
 use std::path::Path;
 
-/// Receives the output and the progress of a job. A command line prints them, a page may draw them, [`Silent`] ignores them.
+/// Receives the output and the progress of a job: what it does not take is ignored. A command line prints them, a page may draw them, [`Silent`]
+/// ignores all.
 pub trait Observer: Sync {
     /// Receives a line of the result, as soon as it is known.
-    ///
-    /// # Errors
-    /// It could not be shown; the job ends.
-    fn result(&self, line: &str) -> Result<(), Error>;
+    fn result(&self, _line: &str) -> Result<(), Error> {
+        Ok(())
+    }
     /// Receives a line of the log.
-    ///
-    /// # Errors
-    /// As [`Self::result`].
-    fn log(&self, line: &str) -> Result<(), Error>;
+    fn log(&self, _line: &str) -> Result<(), Error> {
+        Ok(())
+    }
     /// Receives a warning; the job continues.
-    fn warn(&self, words: &str);
+    fn warn(&self, _words: &str) {}
     /// A stage of `count` evaluations begins.
-    fn progress(&self, stage: &'static str, count: u64) -> Box<dyn Progress>;
+    fn progress(&self, _stage: &'static str, _count: u64) -> Box<dyn Progress> {
+        Box::new(Silent)
+    }
     /// From now on the job can be resumed if the process ends.
-    fn resumable(&self);
+    fn resumable(&self) {}
     /// The job is done, and its answer stands in a file, see [`crate::answer`].
-    ///
-    /// # Errors
-    /// As [`Self::result`].
     fn answered(&self, _file: &Path) -> Result<(), Error> {
         Ok(())
     }
     /// The job is done, and its answer as JSON stands in no file.
-    ///
-    /// # Errors
-    /// As [`Self::result`].
     fn answered_with(&self, _json: &Value) -> Result<(), Error> {
         Ok(())
     }
@@ -41,55 +36,30 @@ pub trait Observer: Sync {
 /// The progress of a stage.
 pub trait Progress: Sync {
     /// One evaluation is known from an earlier run and takes no time; [`Self::inc`] counts it as well.
-    fn known(&self);
+    fn known(&self) {}
     /// Another `more` evaluations are done.
-    fn inc(&self, more: u64);
+    fn inc(&self, _more: u64) {}
     /// The best so far, in words.
     fn best(&self, _words: &str) {}
     /// The stage is finished.
-    fn finish(&self);
+    fn finish(&self) {}
 }
 
 /// Ignores everything.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Silent;
 
-impl Observer for Silent {
-    fn result(&self, _line: &str) -> Result<(), Error> {
-        Ok(())
-    }
-    fn log(&self, _line: &str) -> Result<(), Error> {
-        Ok(())
-    }
-    fn warn(&self, _words: &str) {}
-    fn progress(&self, _stage: &'static str, _count: u64) -> Box<dyn Progress> {
-        Box::new(Self)
-    }
-    fn resumable(&self) {}
-}
+impl Observer for Silent {}
 
-impl Progress for Silent {
-    fn known(&self) {}
-    fn inc(&self, _more: u64) {}
-    fn finish(&self) {}
-}
+impl Progress for Silent {}
 
 /// Passes on warnings alone: for a search whose answer is told as a part of a larger one.
 #[derive(Clone, Copy)]
 pub struct Quiet<'a>(pub &'a dyn Observer);
 
 impl Observer for Quiet<'_> {
-    fn result(&self, _line: &str) -> Result<(), Error> {
-        Ok(())
-    }
-    fn log(&self, _line: &str) -> Result<(), Error> {
-        Ok(())
-    }
     fn warn(&self, words: &str) {
         self.0.warn(words);
-    }
-    fn progress(&self, _stage: &'static str, _count: u64) -> Box<dyn Progress> {
-        Box::new(Silent)
     }
     fn resumable(&self) {
         self.0.resumable();

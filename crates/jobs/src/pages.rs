@@ -8,9 +8,6 @@ use retune_store::Directory;
 use retune_study::{Study, hertz_and_rpm};
 
 /// Writes a page in both forms, and its figures.
-///
-/// # Errors
-/// A file cannot be written.
 pub fn write(document: &Document, directory: &Directory) -> Result<(), Error> {
     document.files().iter().try_for_each(|(name, text)| Ok(directory.write(name, text)?))
 }

@@ -104,7 +104,7 @@ fn kept_or_made(
         }
     }
     let before = searches.results.len();
-    let item = (entry.make)(plan, &mut |study| Ok(searches.tune(study, SEARCHES)?.found().damper.design))?;
+    let item = (entry.make)(plan, &mut |study| Ok(searches.tune(study, SEARCHES)?.damper.design))?;
     if searches.results.len() > before {
         return Ok(item);
     }

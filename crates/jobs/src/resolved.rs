@@ -1,6 +1,6 @@
 //! The complete input of results, with every default written out: `study.json` of one study, `resolved.json` of several.
 
-use crate::Error;
+use crate::{Error, again};
 use retune_store::{Identity, json_text};
 use retune_study::{Study, read::from_text};
 use serde::{Deserialize, Serialize};
@@ -8,17 +8,11 @@ use serde_json::Value;
 use std::path::Path;
 
 /// The text of `study.json`.
-///
-/// # Errors
-/// Serialisation fails, which no known study causes.
 pub fn study_text(study: &Study) -> Result<String, Error> {
     Ok(json_text(&study.resolved(), ONE)?)
 }
 
 /// The identity of the search of a study.
-///
-/// # Errors
-/// Serialisation fails, which no known study causes.
 pub fn identity_of(study: &Study) -> Result<Identity, Error> {
     Ok(Identity::of(&study_text(study)?))
 }
@@ -53,28 +47,17 @@ impl Resolved {
     }
 
     /// The text of the file.
-    ///
-    /// # Errors
-    /// Serialisation fails, which no known study causes.
     pub fn text(&self) -> Result<String, Error> {
         Ok(json_text(self, SEVERAL)?)
     }
 
     /// Reads the file in a directory of results.
-    ///
-    /// # Errors
-    /// It cannot be read, or is not such a file.
     pub fn read(place: &Path) -> Result<Self, Error> {
-        let path = place.join(SEVERAL);
-        let refuse = |source| retune_store::Error::Input { path: path.clone(), source };
-        let text = retune_store::plain::text(&path).map_err(refuse)?;
-        Ok(serde_json::from_str(&text).map_err(|error| refuse(error.into()))?)
+        let text = again::text(place, SEVERAL)?;
+        serde_json::from_str(&text).map_err(|error| again::broken(place, SEVERAL, error.to_string()))
     }
 
     /// The name and the study of each damper.
-    ///
-    /// # Errors
-    /// A study is invalid.
     pub fn studies(&self) -> Result<Vec<(String, Study)>, Error> {
         let study =
             |damper: &Damper| Ok((damper.damper.clone(), from_text(&damper.study.to_string(), SEVERAL)?));

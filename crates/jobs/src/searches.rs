@@ -14,7 +14,6 @@ pub struct Searches<'a> {
     order: &'a Order,
     /// Who is told of them.
     pub watch: &'a dyn Observer,
-    /// The results made so far.
     pub results: Vec<Directory>,
     /// The error of the first search that found none within its limits.
     pub infeasible: Option<Error>,
@@ -32,9 +31,6 @@ impl<'a> Searches<'a> {
     }
 
     /// Makes the search of a study, its results in `place/` and the name of the study.
-    ///
-    /// # Errors
-    /// As [`optimize`].
     pub fn tune(&mut self, study: &Study, place: &str) -> Result<Optimum, Error> {
         let name =
             if place.is_empty() { study.name().to_owned() } else { format!("{place}/{}", study.name()) };
@@ -45,9 +41,6 @@ impl<'a> Searches<'a> {
     }
 
     /// The ends of the searches of some studies, side by side, each with a name of its own; what each is told is not shown.
-    ///
-    /// # Errors
-    /// As [`ends`], the first in their order.
     pub fn ends_of_all(&self, all: &[(Study, String)]) -> Result<Vec<Ends>, Error> {
         let bar = self.watch.progress("searches", all.len() as u64);
         let quiet = Quiet(self.watch);

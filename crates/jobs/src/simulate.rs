@@ -9,7 +9,6 @@ use retune_study::{Study, hertz_and_rpm};
 use serde::Serialize;
 use std::path::Path;
 
-/// Most rows of a trajectory.
 const MOST_ROWS: u32 = 100_000_000;
 
 /// The first characters of every trajectory, of this and of earlier versions, by which a file is recognised as one.

@@ -1,16 +1,10 @@
 //! The results of a run: one type, from which JSON and text are made.
 
-mod baseline;
-mod tuned_damper;
-
-pub use baseline::{baseline, how_many};
-pub use tuned_damper::TunedDamper;
-
 use crate::describe::forced;
-use retune_model::{Measure, Scene, Source, energy_ratios};
+use retune_model::{Damper, Design, Measure, Parameter, Positive, Scene, Source, energy_ratios};
 use retune_optim::Objective;
 use retune_solver::{Response, SceneKind, StructureMaxima};
-use retune_study::{Solver, Span, Study, counted, hertz_and_rpm, over, rounded};
+use retune_study::{Solver, Span, Study, counted, hertz_and_rpm, is_of_paper, over, rounded};
 use serde::Serialize;
 
 /// The observations in the window of a run. SI units; a ratio 0/0 is null.
@@ -97,7 +91,6 @@ pub struct MadeBy {
     objective: Objective,
 }
 
-/// A value for each wall of the cavity.
 #[derive(Clone, Copy, Debug, Serialize)]
 struct Walls<T> {
     primary: T,
@@ -252,11 +245,8 @@ impl std::fmt::Display for Summary {
         writeln!(f, "E1max       {:<12.7} J at t = {:.4} s", self.e1_max, self.t_e1_max)?;
         writeln!(f, "E2max       {:<12.7} J at t = {:.4} s", self.e2_max, self.t_e2_max)?;
         writeln!(f, "R1, R2      {:.5}, {:.5}", self.r1, self.r2)?;
-        writeln!(
-            f,
-            "impacts     {} on the primary structure, {} on the obstacle",
-            self.impacts.primary, self.impacts.obstacle
-        )?;
+        let Walls { primary, obstacle } = self.impacts;
+        writeln!(f, "impacts     {primary} on the primary structure, {obstacle} on the obstacle")?;
         let Walls { primary, obstacle } = self.force_max;
         if primary.max(obstacle).is_infinite() {
             writeln!(f, "force max   without bound: an impact with a rigid wall is an impulse")?;
@@ -266,16 +256,9 @@ impl std::fmt::Display for Summary {
                 "force max   {primary:.3} N on the primary structure, {obstacle:.3} N on the obstacle"
             )?;
         }
-        writeln!(
-            f,
-            "stroke      {:.6} m, the largest spring deflection |x2 - x1 - D|",
-            self.spring_deflection_max
-        )?;
-        writeln!(
-            f,
-            "rel. displ. {:.6} m, the largest relative displacement |x2 - x1|",
-            self.relative_displacement_max
-        )?;
+        let (stroke, relative) = (self.spring_deflection_max, self.relative_displacement_max);
+        writeln!(f, "stroke      {stroke:.6} m, the largest spring deflection |x2 - x1 - D|")?;
+        writeln!(f, "rel. displ. {relative:.6} m, the largest relative displacement |x2 - x1|")?;
         let Structure { x1max, t_x1, v1max, t_v1, a1max, t_a1, ground_force_max, t_ground_force } =
             self.structure;
         writeln!(f, "x1max       {x1max:<12.7} m at t = {t_x1:.4} s")?;
@@ -295,12 +278,67 @@ impl std::fmt::Display for Summary {
             writeln!(f, "transmiss.  {share:<12.5} the transmissibility: {by}")?;
         }
         writeln!(f, "model       {model}")?;
-        write!(
-            f,
-            "work        {}, {} rejected, {}",
-            counted(self.steps, "step"),
-            self.rejected,
-            counted(self.evaluations, "evaluation")
-        )
+        let (steps, evaluations) = (counted(self.steps, "step"), counted(self.evaluations, "evaluation"));
+        write!(f, "work        {steps}, {} rejected, {evaluations}", self.rejected)
+    }
+}
+
+/// The damper of a study's scene: the paper's where it has the numbers of an optimum that the paper publishes.
+pub fn baseline(scene: &Scene) -> &'static str {
+    if scene.damper.as_ref().is_some_and(is_of_paper) {
+        "the paper's damper"
+    } else {
+        "the damper of the study"
+    }
+}
+
+/// A ratio above 1 in three digits, or in words where nobody would read its digits.
+pub fn how_many(times: f64) -> String {
+    if times >= 1e6 { "over a million".to_owned() } else { rounded(times, 3) }
+}
+
+/// A damper as in the paper's Table 2: m2 (kg) and its design.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct TunedDamper {
+    /// m2, mass, kg.
+    #[serde(rename = "m2")]
+    pub mass: Positive,
+    /// k2, c2, D, C, and what else is varied of it.
+    #[serde(flatten)]
+    pub design: Design,
+}
+
+impl TunedDamper {
+    /// From a damper of a scene, with what is varied of it.
+    pub fn of(damper: &Damper, varied: &[Parameter]) -> Self {
+        let others: Vec<Parameter> =
+            varied.iter().copied().filter(|parameter| *parameter != Parameter::M2).collect();
+        Self { mass: damper.mass, design: Design::of_varied(damper, &others) }
+    }
+
+    /// The design, with the mass where that is varied.
+    pub fn design_of(&self, varied: &[Parameter]) -> Design {
+        let mass = |parameter| parameter == Parameter::M2 && varied.contains(&parameter);
+        let value = |parameter| if mass(parameter) { self.mass.get() } else { self.design.get(parameter) };
+        Design::new(value).unwrap_or(self.design)
+    }
+
+    /// The numbers in words, each to its digits: `m2 = 60 kg, k2 = 215 N/m, …`.
+    pub fn words(&self, digits: impl Fn(Parameter) -> usize) -> String {
+        let mass = [(Parameter::M2, self.mass.get())];
+        let design = Parameter::VARIED.map(|parameter| (parameter, self.design.get(parameter)));
+        let known = mass.into_iter().chain(design).filter(|(_, value)| !value.is_nan());
+        let said: Vec<String> = known
+            .map(|(parameter, value)| {
+                format!("{parameter} = {} {}", rounded(value, digits(parameter)), parameter.unit())
+            })
+            .collect();
+        said.join(", ") + if self.design.get(Parameter::D).is_nan() { ", no walls" } else { "" }
+    }
+
+    /// m2, k2, c2, D and C, in SI units; NaN for the gaps of a damper without walls.
+    pub fn values(&self) -> [f64; 5] {
+        let [k2, c2, d, c] = self.design.values();
+        [self.mass.get(), k2, c2, d, c]
     }
 }

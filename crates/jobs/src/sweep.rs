@@ -24,9 +24,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub mod draw;
-pub mod plan;
-pub mod points;
+mod draw;
+mod plan;
+mod points;
 pub mod words;
 
 pub use plan::{Options, Plan, Quantity};

@@ -5,10 +5,9 @@ use crate::certify::judge;
 use crate::designs::{self, Designs, Row};
 use crate::job::{Done, Job, Made};
 use crate::needs::Largest;
-use crate::resolved;
 use crate::searches::Searches;
 use crate::summary::TunedDamper;
-use crate::{Error, Observer, Request};
+use crate::{Error, Observer, Request, resolved};
 use retune_model::Positive;
 use retune_study::{PaperStudy, read_table2};
 use serde_json::json;
@@ -61,7 +60,7 @@ pub fn table2(request: &Request, watch: &dyn Observer) -> Result<Done<Designs>, 
                     .map_or(again.found, |damper| TunedDamper::of(&damper, study.varied())),
                 printed: printed.map(Positive::get),
                 e1_max: paper.value,
-                verdict: certificate.short().verdict(),
+                verdict: certificate.verdict(),
                 reason: certificate.reason().to_owned(),
                 needs: Largest::of(study, &study.scene),
                 ..again.clone()

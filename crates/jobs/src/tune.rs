@@ -1,33 +1,32 @@
 //! `optimize`: from a study to a tuned damper, its log and its figures.
 
 mod again;
-pub mod band;
-pub(crate) mod choice;
-pub mod descent;
+pub(crate) mod band;
+mod choice;
+pub(crate) mod descent;
 pub mod ends;
-pub mod files;
-pub(crate) mod global;
+mod global;
 pub mod log;
 pub mod merge;
 pub mod objective;
-pub(crate) mod optimum;
-pub mod pictures;
-pub(crate) mod refine;
+mod optimum;
+pub(crate) mod pictures;
+mod refine;
 mod report;
-pub(crate) mod surf;
+mod surf;
 mod tmd;
-pub(crate) mod valley;
+mod valley;
 
-pub use files::OPTIMUM;
-pub use optimum::{Found, Optimum, table2_header, table2_row};
+pub(crate) use log::OPTIMUM;
+pub use optimum::Optimum;
+pub(crate) use optimum::{table2_header, table2_row};
 
 use crate::artefact::{Content, Kind, artefact};
-use crate::certify;
 use crate::job::{Done, Job, Made};
-use crate::resolved;
 use crate::summary::Summary;
-use crate::{Error, Observer, Request};
+use crate::{Error, Observer, Request, certify, resolved};
 use global::Basins;
+use objective::Task;
 use optimum::Searched;
 use report::Findings;
 use retune_store::{Directory, Order};
@@ -40,11 +39,11 @@ pub static KIND: Kind = Kind {
     answer: OPTIMUM,
     artefacts: &[
         artefact(resolved::ONE, Content::Input),
-        artefact(files::GRID, Content::Rows(again::grid)),
-        artefact(files::LOG, Content::Rows(again::search)),
-        artefact(files::STARTS, Content::Rows(again::search)),
-        artefact(files::BASINS, Content::Rows(again::search)),
-        artefact(files::BAND, Content::Rows(again::band)),
+        artefact(log::GRID, Content::Rows(again::grid)),
+        artefact(log::LOG, Content::Rows(again::search)),
+        artefact(log::STARTS, Content::Rows(again::search)),
+        artefact(log::BASINS, Content::Rows(again::search)),
+        artefact(log::BAND, Content::Rows(again::band)),
         artefact(OPTIMUM, Content::Whole(again::optimum)),
         artefact(certify::FILE, Content::Whole(again::certificate)),
         artefact(report::FILE, Content::Derived),
@@ -64,9 +63,6 @@ pub fn tune(request: &Request, watch: &dyn Observer) -> Result<Done<Optimum>, Er
 }
 
 /// Tunes the damper of a study that is at hand; `request.study` is what its results are said to be made of.
-///
-/// # Errors
-/// As [`tune`].
 pub fn tune_study(study: &Study, request: &Request, watch: &dyn Observer) -> Result<Done<Optimum>, Error> {
     let search = searched(study)?;
     run(study, request, watch, |results| tuned(study, &search, results, watch))
@@ -112,7 +108,6 @@ fn run(
     Ok(done)
 }
 
-/// The search of a study.
 fn searched(study: &Study) -> Result<Search, Error> {
     study.search().map_err(Error::rule(study))
 }
@@ -124,33 +119,27 @@ fn tuned(
     results: &Directory,
     watch: &dyn Observer,
 ) -> Result<Optimum, Error> {
-    let optimum = search_and_write(study, search, results, watch);
+    let task = Task { study, search, journal: results.journal(), place: "", watch };
+    let optimum = search_and_write(&task, results);
     if optimum.as_ref().is_err_and(|error| !matches!(error, Error::Store(_))) {
         results.discard();
     }
     optimum
 }
 
-/// Searches and writes.
-fn search_and_write(
-    study: &Study,
-    search: &Search,
-    results: &Directory,
-    watch: &dyn Observer,
-) -> Result<Optimum, Error> {
-    let surf = surf::surf(study, search, results, watch)?;
-    let explored = global::global(study, search, (results.journal(), ""), watch)?;
+fn search_and_write(task: &Task, results: &Directory) -> Result<Optimum, Error> {
+    let Task { study, search, .. } = *task;
+    let surf = surf::surf(task, results)?;
+    let explored = global::global(task)?;
     let on_grid = surf.as_ref().map(|surf| surf.starts(search)).unwrap_or_default();
     let starts = ends::starts(search, &on_grid, explored.as_ref());
     let on_grid = on_grid.len();
-    let mut refined = refine::refine(study, search, &starts, results, watch)?;
-    descent::finish(&mut refined, study, search, (results.journal(), "fminsearch"), watch)?;
+    let mut refined = refine::refine(task, &starts, results)?;
+    descent::finish(task, &mut refined)?;
     results.journal().check()?;
     let (certificate, passed_over) = choice::choose(study, &mut refined)?;
     refine::write_winner(study, &refined, results)?;
-    let basins = explored.as_ref().map(|found| {
-        Basins::new(found, study.quantity(), search, &refined, (results.journal(), ""), on_grid)
-    });
+    let basins = explored.as_ref().map(|found| Basins::new(task, found, &refined, on_grid));
     results.journal().check()?;
     if let Some(basins) = &basins {
         basins.write(&refined.objective, results)?;
@@ -161,12 +150,12 @@ fn search_and_write(
     let scene = found.worst_run(design, refined.objective.goal());
     let response = retune_solver::simulate(&scene, study.window.window(), &study.solver.settings())?;
     let summary = Summary::new(study, scene, &response);
-    let valleys = valley::measure(study, search, &refined.best().minimum.x, results.journal());
+    let valleys = valley::measure(task, &refined.best().minimum.x);
     results.journal().check()?;
     let searched =
         Searched { surf: surf.as_ref(), explored: explored.as_ref(), basins, passed_over, valleys };
     results.write_json(certify::FILE, &certificate)?;
-    let optimum = Optimum::new(study, search, searched, &refined, summary, found, certificate.short())?;
+    let optimum = Optimum::new(study, search, searched, &refined, summary, found, certificate)?;
     results.write_json(OPTIMUM, &optimum)?;
     pictures::draw(study, search, surf.as_ref(), &refined, results)?;
     let band = if study.objective().omega.is_some() { band::write(study, design, results)? } else { None };
@@ -177,7 +166,6 @@ fn search_and_write(
         explored: explored.as_ref(),
         refined: &refined,
         optimum: &optimum,
-        certificate: &certificate,
         evaluation: &found,
         tuned: design,
         worst: scene,

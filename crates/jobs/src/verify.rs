@@ -2,13 +2,9 @@
 //! a sample of the rows is run again and compared to the last bit, certificates are made again. Parts that cannot be checked are
 //! reported.
 
-mod files;
 mod report;
-mod rows;
-mod tally;
-mod values;
 
-use crate::again::Made;
+use crate::again::{Made, text};
 use crate::artefact::{Content, Kind};
 use crate::parts::PARTS;
 use crate::{
@@ -16,8 +12,10 @@ use crate::{
     table2, tune,
 };
 use report::Report;
-use retune_store::manifest::Manifest;
-use retune_store::{UNFINISHED, manifest};
+use retune_store::UNFINISHED;
+use retune_store::identity::{Identity, VERSION, sha256};
+use retune_store::manifest::{self, Manifest};
+use retune_study::counted;
 use std::path::{Path, PathBuf};
 
 /// Checks a directory of results, and those in it, and reports of each file whether it holds. Of each table `sample` rows are run
@@ -46,7 +44,6 @@ pub fn verify(path: &Path, sample: usize, within: f64, watch: &dyn Observer) -> 
     report.end(path)
 }
 
-/// The kinds of jobs.
 static KINDS: [&Kind; 10] = [
     &tune::KIND,
     &certify::KIND,
@@ -64,7 +61,7 @@ static COMPARISONS: [&Kind; 2] = [&methods::ACCURACY, &methods::STABILITY];
 
 /// Checks the results in one directory: each file against the manifest, then the contents of each against a computation.
 fn check(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
-    let there = files::verify(place, report)?;
+    let there = compare_files(place, report)?;
     let known = known(place, &there);
     let is_input = |content: &Content| matches!(content, Content::Input);
     if !known.iter().any(|(_, content)| is_input(content))
@@ -76,7 +73,7 @@ fn check(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), Error
         let done = match content {
             Content::Input | Content::Derived => Ok(()),
             Content::Rows(source) => source(place, name)
-                .and_then(|source| rows::check(&place.join(name), name, &source, most, report)),
+                .and_then(|source| report.check_rows(&place.join(name), name, &source, most)),
             Content::Whole(made) => made(place, name).and_then(|made| match made {
                 Made::Of { what, said, again } => report.compare(name, what, &said, &again),
                 Made::Not(why) => report.fail(name, &why),
@@ -94,7 +91,7 @@ fn check(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), Error
         }
     }
     let is_found = known.iter().any(|(name, _)| *name == tune::OPTIMUM);
-    if known.iter().any(|(name, _)| tune::files::SEARCHED.contains(name)) && !is_found {
+    if known.iter().any(|(name, _)| tune::log::SEARCHED.contains(name)) && !is_found {
         return report.unchecked("there is no optimum.json: the design that was found");
     }
     Ok(())
@@ -126,7 +123,7 @@ fn collect(path: &Path, places: &mut Vec<PathBuf>) -> std::io::Result<()> {
         let entry = entry?;
         inner.push((entry.path(), entry.file_type()?.is_dir()));
     }
-    if inner.iter().any(|(path, is_directory)| !is_directory && !files::is_hidden(path)) {
+    if inner.iter().any(|(path, is_directory)| !is_directory && !is_hidden(path)) {
         places.push(path.to_owned());
     }
     // The shares of a grid are the input of a merge, not results.
@@ -135,4 +132,93 @@ fn collect(path: &Path, places: &mut Vec<PathBuf>) -> std::io::Result<()> {
     });
     inner.sort();
     inner.iter().try_for_each(|(path, _)| collect(path, places))
+}
+
+/// Compares every file with the manifest; returns their names, sorted.
+fn compare_files(place: &Path, report: &mut Report<'_>) -> Result<Vec<String>, Error> {
+    let (there, links) = names(place)?;
+    compare_with_manifest(place, &there, report)?;
+    for name in links {
+        report.unchecked(&format!("{name} is a symbolic link, and Retune follows none"))?;
+    }
+    Ok(there)
+}
+
+fn compare_with_manifest(place: &Path, there: &[String], report: &mut Report<'_>) -> Result<(), Error> {
+    if !place.join(manifest::NAME).exists() {
+        return report.unchecked(
+            "there is no manifest.json: what made these files, and whether they are as it made them",
+        );
+    }
+    let manifest = text(place, manifest::NAME).map(|text| serde_json::from_str::<Manifest>(&text));
+    let manifest = match manifest {
+        Ok(Ok(manifest)) => match manifest.check(place) {
+            Ok(()) => manifest,
+            Err(error) => return report.fail(manifest::NAME, &error.to_string()),
+        },
+        Ok(Err(error)) => return report.fail(manifest::NAME, &format!("is no manifest: {error}")),
+        Err(error) => return report.fail(manifest::NAME, &error.to_string()),
+    };
+    let mut problems = Vec::new();
+    for (name, expected) in &manifest.files {
+        match manifest::file_sha256(&place.join(name)) {
+            Ok(found) if found == *expected => {}
+            Ok(_) => problems.push(format!("{name} is not as it was made")),
+            Err(_) => problems.push(format!("{name} is missing")),
+        }
+    }
+    let input = [resolved::SEVERAL, resolved::ONE].into_iter().find(|name| place.join(name).exists());
+    match input {
+        Some(input) if sha256(text(place, input).unwrap_or_default().as_bytes()) != manifest.study_sha256 => {
+            problems.push(format!("{input} is not the study that made these results"));
+        }
+        _ => {}
+    }
+    let files = counted(manifest.files.len() as u64, "file");
+    let made = if manifest.files.len() == 1 { "it was" } else { "they were" };
+    let words = match problems.as_slice() {
+        [] => format!("{files} as {made} made"),
+        problems => format!("{files}: {}", problems.join("; ")),
+    };
+    report.found("", Some(problems.is_empty()), &words);
+    report.watch.result(&format!("  {words}"))?;
+    let place = report.place.clone();
+    report.problems.extend(problems.into_iter().map(|problem| format!("{place}{problem}")));
+    let unnamed: Vec<String> =
+        there.iter().filter(|name| !manifest.files.contains_key(*name)).cloned().collect();
+    if !unnamed.is_empty() {
+        let not = if unnamed.len() == 1 { "is" } else { "are" };
+        report.unchecked(&format!("{} {not} not in the manifest", unnamed.join(", ")))?;
+    }
+    if manifest.retune != VERSION {
+        report.watch.result(&format!("  note: made by Retune {}, this is {VERSION}", manifest.retune))?;
+    }
+    if manifest.arithmetic != Identity::of("").arithmetic {
+        report.watch.result(
+            "  note: made on a machine whose sines or powers differ in their last bits; --within allows for that",
+        )?;
+    }
+    Ok(())
+}
+
+/// Whether a file is not a result: a lock, or a hidden file of an editor.
+fn is_hidden(path: &Path) -> bool {
+    path.file_name().is_none_or(|name| name.to_string_lossy().starts_with('.'))
+}
+
+/// The names of the files in a directory but the manifest, sorted; and those of the symbolic links.
+fn names(place: &Path) -> Result<(Vec<String>, Vec<String>), Error> {
+    let refuse = |source| retune_store::Error::Input { path: place.to_owned(), source };
+    let (mut names, mut links) = (Vec::new(), Vec::new());
+    for entry in std::fs::read_dir(place).map_err(refuse)? {
+        let entry = entry.map_err(refuse)?;
+        let (path, kind) = (entry.path(), entry.file_type().map_err(refuse)?);
+        let list = if kind.is_symlink() { &mut links } else { &mut names };
+        if !kind.is_dir() && !is_hidden(&path) && !path.ends_with(manifest::NAME) {
+            list.push(entry.file_name().to_string_lossy().into_owned());
+        }
+    }
+    names.sort();
+    links.sort();
+    Ok((names, links))
 }

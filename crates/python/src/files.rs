@@ -6,7 +6,7 @@ use crate::monitor::{Monitor, monitored};
 use crate::problem::json;
 use pyo3::prelude::*;
 use retune_jobs::answer::as_json;
-use retune_jobs::design::Wishes;
+use retune_jobs::design::Specification;
 use retune_jobs::sweep::Options;
 use retune_jobs::sweep::Points;
 use retune_jobs::{Error, Request, certify, design, sweep, table2, tune};
@@ -22,7 +22,7 @@ use std::str::FromStr;
 #[serde(rename_all = "lowercase")]
 enum Job {
     Certify,
-    Design(Box<Wishes>),
+    Design(Box<Specification>),
     Fronts,
     Losses,
     Merge { parts: Vec<PathBuf> },
@@ -68,8 +68,8 @@ fn done(job: Job, request: &Request, monitor: &Monitor) -> Result<String, Fault>
     let mut out = request.out_of_file();
     match job {
         Job::Certify => return json(&certify::certify_file(request, monitor)?),
-        Job::Design(wishes) => {
-            drop(design::design(&wishes.within("design").requirements()?, request, monitor)?);
+        Job::Design(specification) => {
+            drop(design::design(&specification.within("design").requirements()?, request, monitor)?);
         }
         Job::Fronts => drop(fronts::fronts(request, monitor)?),
         Job::Losses => drop(losses::losses(request, monitor)?),

@@ -5,8 +5,8 @@ use crate::monitor::{caught, monitored, on_pool};
 use crate::pool::{check, pool};
 use crate::problem::{Core, json};
 use pyo3::prelude::*;
-use retune_jobs::design::Wishes;
-use retune_jobs::job::Done;
+use retune_jobs::Done;
+use retune_jobs::design::Specification;
 use retune_jobs::{Request, tune, verify as verification};
 use retune_model::{Of, Parameter, Positive, Surfaces, unit};
 use retune_store::Begin;
@@ -118,9 +118,9 @@ pub fn verify(
 #[pyfunction]
 pub fn design_study(requirements: &str, kind: &str) -> PyResult<String> {
     let made = || {
-        let wishes: Wishes =
+        let specification: Specification =
             serde_json::from_str(requirements).map_err(|error| Fault::Other(error.to_string()))?;
-        let requirements = wishes.within("damper").requirements()?;
+        let requirements = specification.within("damper").requirements()?;
         json(&if kind == "TMD" { requirements.tmd()? } else { requirements.ssvi()? })
     };
     Ok(caught(made)?)

@@ -1,31 +1,26 @@
 //! A chart as data: two axes, and layers from back to front.
 
-use crate::axis::Axis;
-use crate::colour::Colour;
+use crate::axis::{Axis, Scale, scale_for};
+use crate::colour::{BLACK, Colour};
 
 /// How a line is interrupted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "their names say what they are")]
 pub enum Dash {
-    /// Not at all.
     Solid,
-    /// Long dashes.
     Long,
-    /// Short dashes.
     Short,
-    /// Dots.
     Dots,
-    /// Dashes and dots in turn.
     DashDot,
 }
 
 /// How a line is drawn.
 #[derive(Clone, Copy, Debug)]
+#[expect(missing_docs, reason = "their names say what they are")]
 pub struct Stroke {
-    /// Its colour.
     pub colour: Colour,
     /// Its width, pt.
     pub width: f64,
-    /// Its dashes.
     pub dash: Dash,
 }
 
@@ -43,27 +38,21 @@ impl Stroke {
 
 /// The shape of a mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "their names say what they are")]
 pub enum Shape {
-    /// A disc.
     Disc,
-    /// A ring.
     Ring,
-    /// A filled square.
     Square,
-    /// An empty square.
     Frame,
-    /// A filled triangle.
     Triangle,
-    /// A cross.
     Cross,
 }
 
 /// How a point is marked.
 #[derive(Clone, Copy, Debug)]
+#[expect(missing_docs, reason = "their names say what they are")]
 pub struct Mark {
-    /// Its shape.
     pub shape: Shape,
-    /// Its colour.
     pub colour: Colour,
     /// Its diameter, pt.
     pub size: f64,
@@ -80,87 +69,62 @@ impl Mark {
 
 /// A layer of a chart. What lies beyond the axes is cut off.
 #[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "their names say what they are")]
 pub enum Layer {
     /// A line through points; values that are not finite break it.
     Line {
-        /// Its points.
         points: Vec<(f64, f64)>,
-        /// Its look.
         stroke: Stroke,
     },
     /// A line that keeps the height of a point until the next one.
     Steps {
-        /// Its points.
         points: Vec<(f64, f64)>,
-        /// Its look.
         stroke: Stroke,
     },
-    /// Many dots, of which those that cover one another are drawn once.
+    /// Many dots of a diameter in pt, of which those that cover one another are drawn once.
     Dots {
-        /// Their points.
         points: Vec<(f64, f64)>,
-        /// Their colour.
         colour: Colour,
-        /// Their diameter, pt.
         size: f64,
     },
     /// Points that are marked one by one.
     Marks {
-        /// The points.
         points: Vec<(f64, f64)>,
-        /// Their look.
         mark: Mark,
     },
     /// A filled rectangle; infinite ends reach to the frame.
     Band {
-        /// Its left and right end.
         x: (f64, f64),
-        /// Its lower and upper end.
         y: (f64, f64),
-        /// Its colour.
         colour: Colour,
-        /// Its opacity, 0 to 1.
         opacity: f64,
     },
-    /// A coloured cell for each value: the index of the first side varies fastest.
+    /// A coloured cell for each value, between edges along both axes: the index of the first side varies fastest. Values that are not finite
+    /// are grey; `colours` says what the colours mean.
     Map {
-        /// The edges of the cells along both axes.
         edges: [Vec<f64>; 2],
-        /// The values; those that are not finite are grey.
         values: Vec<f64>,
-        /// What the colours mean.
         colours: Axis,
     },
     /// A vertical line over the whole height.
     Upright {
-        /// Its abscissa.
         x: f64,
-        /// Its look.
         stroke: Stroke,
     },
     /// A horizontal line over the whole width.
     Level {
-        /// Its ordinate.
         y: f64,
-        /// Its look.
         stroke: Stroke,
     },
-    /// A text on the chart.
     Text {
-        /// Its place.
         at: (f64, f64),
-        /// Its words.
         text: String,
-        /// How it stands there.
         stand: Stand,
     },
     /// A name on the right of the frame for a line that ends at a place. Names are moved apart, each with a thin line to its place.
     Name {
-        /// The place.
         at: (f64, f64),
-        /// The name.
         text: String,
-        /// The mark before it, if any.
         mark: Option<Mark>,
     },
 }
@@ -185,12 +149,10 @@ pub enum Stand {
 
 /// A chart.
 #[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "their names say what they are")]
 pub struct Chart {
-    /// The title above it.
     pub title: String,
-    /// The abscissa.
     pub x: Axis,
-    /// The ordinate.
     pub y: Axis,
     /// The layers, from back to front.
     pub layers: Vec<Layer>,
@@ -207,15 +169,94 @@ impl Chart {
 
 /// The symbol of an entry in a legend.
 #[derive(Clone, Copy, Debug)]
+#[expect(missing_docs, reason = "their names say what they are")]
 pub enum Key {
-    /// A line.
     Line(Stroke),
-    /// A line with a mark.
     Marked(Stroke, Mark),
-    /// A mark.
     Mark(Mark),
     /// An area: its colour and opacity.
     Area(Colour, f64),
     /// No symbol: the text is the heading of a row of entries.
     Heading,
+}
+
+/// A side of the grid.
+#[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "their names say it")]
+pub struct Nodes {
+    pub label: String,
+    pub scale: Scale,
+    /// Its values, ascending.
+    pub values: Vec<f64>,
+}
+
+/// A place on the map with its entry in the legend.
+#[derive(Clone, Debug)]
+pub struct Place {
+    /// The place. Outside the axes it is not drawn, and the legend says so.
+    pub at: (f64, f64),
+    /// Its meaning.
+    pub label: String,
+}
+
+/// Shapes of the places, in their order.
+const MARKS: [Mark; 3] = [
+    Mark { rim: true, ..Mark::new(Shape::Frame, BLACK, 10.0) },
+    Mark { rim: true, ..Mark::new(Shape::Disc, BLACK, 4.5) },
+    Mark { rim: true, ..Mark::new(Shape::Cross, BLACK, 7.0) },
+];
+
+/// The chart of `values` over the two `sides`, row by row: the index of the first side varies fastest. `quantity` is their label with
+/// its unit. Values that are not finite are grey. The legend belongs to it.
+pub fn heat_map(
+    sides: &[Nodes; 2],
+    values: &[f64],
+    quantity: &str,
+    places: &[Place],
+) -> (Chart, Vec<(Key, String)>) {
+    let edges = [edges(&sides[0]), edges(&sides[1])];
+    let axis = |side: usize| {
+        let ends = (edges[side][0], edges[side][edges[side].len() - 1]);
+        Axis::new(sides[side].label.as_str(), sides[side].scale, ends)
+    };
+    let (x, y) = (axis(0), axis(1));
+    let colours = Axis::exact(quantity, scale_for(values), values.iter().copied());
+    let mut layers = vec![Layer::Map { edges: edges.clone(), values: values.to_vec(), colours }];
+    let mut legend = Vec::new();
+    for (place, mark) in places.iter().zip(MARKS.into_iter().cycle()) {
+        let inside = x.holds(place.at.0) && y.holds(place.at.1);
+        let off = if inside { "" } else { " (off the map)" };
+        legend.push((Key::Mark(mark), format!("{}{off}", place.label)));
+        layers.push(Layer::Marks { points: vec![place.at], mark });
+    }
+    (Chart { title: String::new(), x, y, layers, height: 190.0 }, legend)
+}
+
+/// The edges of the cells around the nodes: halfway to the next node, on the scale of the side.
+fn edges(side: &Nodes) -> Vec<f64> {
+    let to = |v: f64| if side.scale == Scale::Log { v.ln() } else { v };
+    let from = |v: f64| if side.scale == Scale::Log { v.exp() } else { v };
+    let nodes: Vec<f64> = side.values.iter().map(|&v| to(v)).collect();
+    let Some(first) = nodes.first() else { return vec![0.0, 1.0] };
+    let half_first = nodes.get(1).map_or(0.5, |second| 0.5 * (second - first));
+    let mut edges = vec![from(first - half_first)];
+    for (i, node) in nodes.iter().enumerate() {
+        let half = nodes.get(i + 1).map_or_else(|| node - to(edges[i]), |next| 0.5 * (next - node));
+        edges.push(from(node + half));
+    }
+    edges
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exact_edges_lie_halfway_on_the_scale() {
+        let nodes = |scale, values: &[f64]| Nodes { label: String::new(), scale, values: values.to_vec() };
+        assert_eq!(edges(&nodes(Scale::Linear, &[1.0, 2.0, 4.0])), [0.5, 1.5, 3.0, 5.0]);
+        let log = edges(&nodes(Scale::Log, &[1.0, 100.0]));
+        assert!(log.iter().zip([0.1, 10.0, 1000.0]).all(|(a, b)| (a / b - 1.0).abs() < 1e-12), "{log:?}");
+        assert_eq!(edges(&nodes(Scale::Linear, &[3.0])), [2.5, 3.5]);
+    }
 }

@@ -1,6 +1,7 @@
 //! A page of results as data: written once as Markdown, for readers of the repository, and once as HTML, which needs no network.
 
 use crate::html::{Table, figure, head, link};
+use crate::table::Column;
 use crate::{Drawing, table};
 use maud::{DOCTYPE, Markup, html};
 use serde::{Deserialize, Serialize};
@@ -8,12 +9,11 @@ use serde::{Deserialize, Serialize};
 /// The verdict on a statement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[expect(missing_docs, reason = "their names say it")]
 pub enum Verdict {
-    /// It holds.
     Holds,
     /// It holds in part, or in a sense that is not stated.
     Partly,
-    /// It does not hold.
     Fails,
     /// Practically equal cases decide it differently.
     Undecided,
@@ -76,10 +76,9 @@ pub struct Statement {
 
 /// A figure with its caption that stands in a file of its own, too.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Picture {
-    /// The name of its file.
+#[expect(missing_docs, reason = "their names say it")]
+pub struct Figure {
     pub file: String,
-    /// As SVG.
     pub drawing: Drawing,
     /// What it shows, and how it was made.
     pub caption: String,
@@ -87,23 +86,21 @@ pub struct Picture {
 
 /// A piece of a page.
 #[derive(Debug)]
+#[expect(missing_docs, reason = "their names say it")]
 pub enum Block {
-    /// A paragraph.
     Words(String),
     /// A paragraph that begins with its subject.
     About(&'static str, String),
     /// How the contents of a section were made.
     MadeBy(String),
-    /// Statements, each with its verdict.
     Statements(Vec<Statement>),
-    /// A list of statements.
     List(Vec<String>),
     /// A table: its caption, its head, its rows.
     Table(String, Vec<String>, Vec<Vec<String>>),
-    /// A figure: its file, the drawing, its caption.
-    Figure(&'static str, Drawing, String),
-    /// A figure with a link to its file.
-    Picture(Picture),
+    /// A figure, which is a file of the page.
+    Figure(Figure),
+    /// A figure with a link to its file, which somebody else writes.
+    Linked(Figure),
     /// Links to files beside the page.
     Files(Vec<String>),
     /// Elements of a page as HTML alone, which Markdown leaves out.
@@ -114,14 +111,12 @@ pub enum Block {
 
 /// A page.
 #[derive(Debug)]
+#[expect(missing_docs, reason = "their names say it")]
 pub struct Document {
-    /// Its title.
     pub title: String,
-    /// The command that made it.
     pub command: &'static str,
     /// What stands before the first section.
     pub opening: Vec<Block>,
-    /// Its sections.
     pub sections: Vec<Section>,
 }
 
@@ -130,14 +125,10 @@ pub type Section = (&'static str, &'static str, Vec<Block>);
 
 impl Document {
     /// Its files, each with its name: both forms and all figures.
-    pub fn files(&self) -> Vec<(&'static str, String)> {
+    pub fn files(&self) -> Vec<(&str, String)> {
         let blocks = self.opening.iter().chain(self.sections.iter().flat_map(|(.., blocks)| blocks));
-        let figure = |block: &Block| match block {
-            Block::Figure(file, drawing, _) => Some((*file, drawing.wide.clone())),
-            _ => None,
-        };
         let pages = [("README.md", self.markdown()), ("report.html", self.html())];
-        blocks.filter_map(figure).chain(pages).collect()
+        blocks.filter_map(Block::file).chain(pages).collect()
     }
 
     /// As Markdown.
@@ -209,8 +200,8 @@ impl Block {
     }
 
     /// A figure: its file, the drawing, its caption.
-    pub fn figure(file: &'static str, drawing: impl Into<Drawing>, caption: impl Into<String>) -> Self {
-        Self::Figure(file, drawing.into(), caption.into())
+    pub fn figure(file: &str, drawing: impl Into<Drawing>, caption: impl Into<String>) -> Self {
+        Self::Figure(Figure { file: file.to_owned(), drawing: drawing.into(), caption: caption.into() })
     }
 
     /// Links to files beside the page.
@@ -220,12 +211,19 @@ impl Block {
 
     /// A table as a block.
     pub fn of_table(caption: impl Into<String>, table: &table::Table) -> Self {
-        let head = table.columns.iter().map(|column| match &*column.unit {
-            "" => column.name.clone(),
-            unit => format!("{}, {unit}", column.name),
-        });
         let texts = |row: &Vec<table::Cell>| row.iter().map(ToString::to_string).collect();
-        Self::Table(caption.into(), head.collect(), table.rows.iter().map(texts).collect())
+        Self::table(
+            caption,
+            table.columns.iter().map(Column::heading),
+            table.rows.iter().map(texts).collect(),
+        )
+    }
+
+    fn file(&self) -> Option<(&str, String)> {
+        match self {
+            Self::Figure(Figure { file, drawing, .. }) => Some((file, drawing.wide.clone())),
+            _ => None,
+        }
     }
 
     fn markdown(&self) -> String {
@@ -252,8 +250,9 @@ impl Block {
                 let rows: String = rows.iter().map(|row| format!("| {} |\n", row.join(" | "))).collect();
                 format!("{caption}\n\n| {} |\n| {rule} |\n{rows}\n", head.join(" | "))
             }
-            Self::Figure(file, _, caption) => format!("![{caption}]({file})\n\n"),
-            Self::Picture(Picture { file, caption, .. }) => format!("![{caption}]({file})\n\n"),
+            Self::Figure(Figure { file, caption, .. }) | Self::Linked(Figure { file, caption, .. }) => {
+                format!("![{caption}]({file})\n\n")
+            }
             Self::Files(files) => {
                 let links: Vec<String> = files.iter().map(|file| format!("[{file}]({file})")).collect();
                 format!("{}\n\n", links.join(", "))
@@ -273,13 +272,12 @@ impl Block {
             Self::Statements(all) => html! { ul.statements { @for one in all { (one.html()) } } },
             Self::List(all) => html! { ul { @for words in all { li { (words) } } } },
             Self::Table(caption, head, rows) => {
-                let head: Vec<&str> = head.iter().map(String::as_str).collect();
-                let mut table = Table::new(caption.as_str(), &head);
-                rows.iter().for_each(|row| table.row(row.iter().cloned()));
+                let mut table = Table { head: head.clone(), ..Table::new(caption.as_str(), "") };
+                rows.iter().for_each(|row| table.row(row));
                 table.markup()
             }
-            Self::Figure(_, drawing, caption) => figure(drawing, html! { (caption) }),
-            Self::Picture(Picture { file, drawing, caption }) => {
+            Self::Figure(Figure { drawing, caption, .. }) => figure(drawing, html! { (caption) }),
+            Self::Linked(Figure { file, drawing, caption }) => {
                 figure(drawing, html! { (caption) " " (link(file)) })
             }
             Self::Files(files) => {
@@ -345,11 +343,10 @@ mod tests {
             verdict: Verdict::of_all(&[true, false]),
             found: "1 of 2".to_owned(),
         };
-        let mut table =
-            table::Table::new([table::Column::new("k1", "N/m"), table::Column::new("motion", "")]);
+        let mut table = table::Table::new([Column::new("k1", "N/m"), Column::new("motion", "")]);
         table.push(crate::cells![2.5, "a, b"]);
         let drawing = Drawing::from("<svg></svg>".to_owned());
-        let picture = Picture { file: "a.svg".to_owned(), drawing, caption: "A figure.".to_owned() };
+        let picture = Figure { file: "a.svg".to_owned(), drawing, caption: "A figure.".to_owned() };
         let document = Document {
             title: "T".to_owned(),
             command: "retune reproduce",
@@ -359,7 +356,7 @@ mod tests {
                 "One",
                 vec![
                     Block::Statements(vec![statement]),
-                    Block::Picture(picture),
+                    Block::Linked(picture),
                     Block::of_table("Motions", &table),
                     Block::MadeBy("runs".to_owned()),
                 ],

@@ -24,37 +24,35 @@ pub fn head(title: &str) -> Markup {
 const LONG: usize = 48;
 
 /// A table. The first cell of each row is the row's heading.
+#[expect(missing_docs, reason = "their names say it")]
 pub struct Table {
-    /// What it shows.
     pub caption: String,
-    /// The headings of its columns.
     pub head: Vec<String>,
-    /// Its rows.
     pub rows: Vec<Vec<Markup>>,
     /// Whether its cells break into lines.
     pub wraps: bool,
 }
 
 impl Table {
-    /// A table without rows.
-    pub fn new(caption: impl Into<String>, head: &[&str]) -> Self {
-        let head = head.iter().map(|name| (*name).to_owned()).collect();
+    /// A table without rows; its headings as they stand in the head of a Markdown table.
+    pub fn new(caption: impl Into<String>, head: &str) -> Self {
+        let head = head.split(" | ").map(str::to_owned).collect();
         Self { caption: caption.into(), head, rows: Vec::new(), wraps: false }
     }
 
     /// The same for cells with words, which break into lines.
-    pub fn wrapping(caption: impl Into<String>, head: &[&str]) -> Self {
+    pub fn wrapping(caption: impl Into<String>, head: &str) -> Self {
         Self { wraps: true, ..Self::new(caption, head) }
     }
 
     /// Adds a row of texts. Long ones break into lines in any table, in a column that stays wide enough to be read.
-    pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+    pub fn row(&mut self, cells: impl IntoIterator<Item = impl ToString>) {
         let wraps = self.wraps;
         let cell = |text: String| {
             let is_long = !wraps && text.chars().count() > LONG;
             html! { @if is_long { span.long { (text) } } @else { (text) } }
         };
-        self.rows.push(cells.into_iter().map(cell).collect());
+        self.rows.push(cells.into_iter().map(|text| cell(text.to_string())).collect());
     }
 
     /// Its HTML: it scrolls in its own box where it is wider than the page.

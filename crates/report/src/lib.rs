@@ -11,27 +11,22 @@
 //!
 //! ```
 //! use retune_report::colour::BLUE;
-//! use retune_report::{Axis, Chart, Key, Layer, Sheet, Stroke, Width, svg};
+//! use retune_report::{Axis, Chart, Key, Layer, Sheet, Stroke, svg};
 //!
 //! // The amplification of an oscillator with 5 % damping over the frequency ratio.
 //! let ratios = (0..=100).map(|i| 0.02 * f64::from(i));
-//! let points = ratios.map(|r| (r, 1.0 / ((1.0 - r * r).powi(2) + (0.1 * r).powi(2)).sqrt())).collect();
+//! let points = ratios.map(|r| (r, 1.0 / ((1.0 - r * r).powi(2) + (0.1 * r).powi(2)).sqrt()));
 //! let chart = Chart {
 //!     title: "Response at 5 % damping".to_owned(),
 //!     x: Axis::linear("ω/ω₁", (0.0, 2.0)),
 //!     y: Axis::linear("amplification", (0.0, 12.0)),
-//!     layers: vec![Layer::Line { points, stroke: Stroke::solid(BLUE) }],
+//!     layers: vec![Layer::line(points, Stroke::solid(BLUE))],
 //!     height: 150.0,
 //! };
 //! let figure = svg(&Sheet {
-//!     title: "Frequency response".to_owned(),
 //!     description: "The amplification rises from 1 to 10 at resonance and falls again.".to_owned(),
-//!     width: Width::Column,
-//!     charts: vec![chart],
-//!     columns: 1,
-//!     stacked: false,
 //!     legend: vec![(Key::Line(Stroke::solid(BLUE)), "linear".to_owned())],
-//!     caption: vec!["A linear oscillator.".to_owned()],
+//!     ..Sheet::of("Frequency response", vec![chart])
 //! });
 //! assert!(figure.starts_with("<svg ") && figure.contains(">Response at 5 % damping</text>"));
 //! assert!(figure.contains("ω/ω<tspan dy=\"0.28em\" font-size=\"72%\">1</tspan></text>"));
@@ -42,7 +37,6 @@ mod chart;
 pub mod colour;
 pub mod document;
 mod draw;
-mod heat_map;
 pub mod html;
 mod layout;
 mod path;
@@ -53,7 +47,6 @@ mod text;
 mod ticks;
 
 pub use axis::{Axis, Scale, scale_for};
-pub use chart::{Chart, Dash, Key, Layer, Mark, Shape, Stand, Stroke};
-pub use heat_map::{Nodes, Place, heat_map};
+pub use chart::{Chart, Dash, Key, Layer, Mark, Nodes, Place, Shape, Stand, Stroke, heat_map};
 pub use sheet::{Drawing, Sheet, Width, drawing, svg};
 pub use ticks::ten_to;

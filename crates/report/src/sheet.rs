@@ -29,14 +29,13 @@ impl Width {
 
 /// A figure as data.
 #[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "their names say it")]
 pub struct Sheet {
     /// What it shows, in a few words: the `<title>` of the SVG.
     pub title: String,
     /// What can be seen in it, for a reader who cannot: its `<desc>`.
     pub description: String,
-    /// Its width.
     pub width: Width,
-    /// The charts, row by row.
     pub charts: Vec<Chart>,
     /// Charts in a row.
     pub columns: usize,
@@ -65,16 +64,7 @@ impl Sheet {
 
     /// A figure as wide as a page, one chart a row, without legend and caption.
     pub fn page(title: impl Into<String>, description: impl Into<String>, charts: Vec<Chart>) -> Self {
-        Self {
-            title: title.into(),
-            description: description.into(),
-            width: Width::Page,
-            charts,
-            columns: 1,
-            stacked: false,
-            legend: Vec::new(),
-            caption: Vec::new(),
-        }
+        Self { description: description.into(), width: Width::Page, ..Self::of(title, charts) }
     }
 
     /// The words of its legend, one after the other.

@@ -3,7 +3,7 @@
 use crate::cli::{self, Cli, Command, Kind};
 use crate::screen::{self, Screen};
 use clap::CommandFactory;
-use retune_jobs::design::{self, Wishes};
+use retune_jobs::design::{self, Specification};
 use retune_jobs::designs::Designs;
 use retune_jobs::evaluate::Streams;
 use retune_jobs::prove::Guess;
@@ -88,18 +88,18 @@ pub fn run(command: Command) -> Result<(), Error> {
 
 fn design(arguments: &cli::Design) -> Result<(), Error> {
     let cli::Design { file, running, .. } = arguments;
-    let given = arguments.wishes();
-    let wishes = match file {
-        Some(file) => Wishes::read(file)?.with(given),
+    let given = arguments.specification();
+    let specification = match file {
+        Some(file) => Specification::read(file)?.with(given),
         None => given,
     };
     let of_mode =
         arguments.modes.as_deref().map(|table| design::structure(table, arguments.mode)).transpose()?;
-    let (wishes, said) = match of_mode {
-        Some((structure, said)) => (wishes.with(structure), Some(said)),
-        None => (wishes, None),
+    let (specification, said) = match of_mode {
+        Some((structure, said)) => (specification.with(structure), Some(said)),
+        None => (specification, None),
     };
-    let requirements = wishes.requirements()?;
+    let requirements = specification.requirements()?;
     let stem = file.as_deref().and_then(Path::file_stem).map(|stem| stem.to_string_lossy().into_owned());
     let name = stem.map_or("design".to_owned(), |stem| format!("design-{stem}"));
     let out = || design::place(&requirements, &name, running.resume);

@@ -1,19 +1,17 @@
 //! A directory of results while they are made: opened, filled, read.
 
-mod manifest;
-mod publish;
-
-use crate::entries::{names, sync_directory};
 use crate::error::Error;
 use crate::identity::{Identity, json_text};
 use crate::journal::Journal;
 use crate::lock::Lock;
-use crate::manifest::{MadeBy, NAME, file_sha256};
+use crate::manifest::{Fields, MadeBy, Manifest, NAME, file_sha256};
 use crate::order::{Extent, Order};
 use crate::pending::{self, Pending};
-use crate::plain;
+use crate::plain::{self, names, sync_directory};
 use crate::unfinished::{self, JOURNAL, UNFINISHED, Unfinished};
+use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -75,9 +73,6 @@ impl Directory {
     }
 
     /// The directory `name` below this one, for a search that is part of the work.
-    ///
-    /// # Errors
-    /// A symbolic link stands in its place.
     pub fn part(&self, name: &str) -> Result<PathBuf, Error> {
         let part = plain::below(&self.path, name).map_err(|source| self.refused(source))?;
         self.journal.note_part(name);
@@ -131,17 +126,11 @@ impl Directory {
     }
 
     /// Begins the file `name`.
-    ///
-    /// # Errors
-    /// It cannot be made.
     pub fn file(&self, name: &str) -> Result<Pending, Error> {
         Pending::create(&self.unfinished.join(name))
     }
 
     /// Writes the whole file `name`.
-    ///
-    /// # Errors
-    /// It cannot be written.
     pub fn write(&self, name: &str, text: &str) -> Result<(), Error> {
         let mut file = self.file(name)?;
         file.push(text)?;
@@ -149,10 +138,7 @@ impl Directory {
     }
 
     /// Writes `value` as the JSON file `name`.
-    ///
-    /// # Errors
-    /// It cannot be written.
-    pub fn write_json(&self, name: &str, value: &impl serde::Serialize) -> Result<(), Error> {
+    pub fn write_json(&self, name: &str, value: &impl Serialize) -> Result<(), Error> {
         self.write(name, &json_text(value, name)?)
     }
 
@@ -162,9 +148,6 @@ impl Directory {
     }
 
     /// The names of the complete results, sorted.
-    ///
-    /// # Errors
-    /// The directory cannot be read.
     pub fn whole(&self) -> Result<Vec<String>, Error> {
         let mut names = names(&self.unfinished).map_err(|source| self.refused(source))?;
         names.retain(|name| name != JOURNAL && !name.ends_with(".item") && !name.starts_with('.'));
@@ -203,5 +186,144 @@ impl Drop for Directory {
         if self.journal.is_empty() && !self.parts().iter().any(began) {
             let _ = unfinished::remove(&self.unfinished); // an empty journal does no harm either
         }
+    }
+}
+
+impl Directory {
+    /// Writes the manifest of all complete results, made by `solvers`; it must be the last file.
+    pub fn write_manifest(&self, solvers: impl IntoIterator<Item = impl Serialize>) -> Result<(), Error> {
+        let mut files = self.new_files()?;
+        let mut earlier = BTreeMap::new();
+        let mut made_by = self.made_by();
+        let mut parts = self.parts();
+        if let Some(old) = Manifest::read(&self.path)? {
+            // Files that this run does not replace stay listed: as part of the results if they are of the same work, else as earlier.
+            let same = old.identity() == self.identity;
+            let whole = old.files.into_iter().map(|(name, sha)| (same, name, sha));
+            let rest = old.earlier.into_iter().map(|(name, sha)| (false, name, sha));
+            for (is_part, name, sha) in whole.chain(rest) {
+                if !self.replaces(&name) && !files.contains_key(&name) {
+                    if is_part { &mut files } else { &mut earlier }.insert(name, sha);
+                }
+            }
+            if same && self.extent != Extent::Whole {
+                parts.extend(old.parts); // those of the files that stay
+            }
+            // The same study from another place is still that of the first.
+            if same {
+                made_by = old.made_by;
+            }
+        }
+        let Identity { study: study_sha256, version, arithmetic } = self.identity.clone();
+        let solvers =
+            solvers.into_iter().map(|solver| fields(&solver)).collect::<Result<Vec<Fields>, Error>>()?;
+        let mut solvers = solvers.into_iter();
+        let solver = solvers.next().filter(|first| solvers.all(|other| other == *first));
+        let manifest =
+            Manifest { retune: version, made_by, study_sha256, arithmetic, solver, files, earlier, parts };
+        self.write_json(NAME, &manifest)
+    }
+
+    /// Adds the new files to the existing manifest: they belong to results that are not changed.
+    pub fn amend_manifest(&self) -> Result<(), Error> {
+        let Some(mut manifest) = Manifest::read(&self.path)? else { return Ok(()) };
+        manifest.files.extend(self.new_files()?);
+        self.write_json(NAME, &manifest)
+    }
+
+    /// Whether `path` holds the complete results of this work, `file` among them.
+    pub fn is_finished(path: &Path, identity: &Identity, file: &str) -> bool {
+        let is_made = |made: Manifest| made.identity() == *identity && made.files.contains_key(file);
+        Manifest::read(path).ok().flatten().is_some_and(is_made) && !Self::is_unfinished(path)
+    }
+}
+
+/// A structure as a flat JSON object.
+fn fields(of: &impl Serialize) -> Result<Fields, Error> {
+    let refuse = |error: serde_json::Error| Error::Output { path: NAME.into(), source: error.into() };
+    serde_json::from_str(&serde_json::to_string(of).map_err(refuse)?).map_err(refuse)
+}
+
+impl Directory {
+    /// Puts the new results into the place of the earlier ones. They are on the disk before an earlier one goes; the journal stays
+    /// until [`Self::finish`].
+    ///
+    /// # Errors
+    /// There is something in their place that may not be replaced, or a file cannot be written, moved or removed.
+    pub fn publish(&self) -> Result<(), Error> {
+        self.journal.check()?;
+        let new = self.whole()?;
+        if new.is_empty() {
+            return Ok(()); // they are in their place already
+        }
+        // Someone may have put a file there since the work began.
+        self.order
+            .may_replace(&self.path, self.extent, &self.identity, |name| new.iter().any(|new| new == name))?;
+        self.place(&new).map_err(|source| self.refused(source))
+    }
+
+    /// The process may end at any moment, so a manifest that names the old and the new files is written first.
+    fn place(&self, new: &[String]) -> std::io::Result<()> {
+        for name in new {
+            File::open(self.unfinished.join(name))?.sync_all()?;
+        }
+        let old = Manifest::read(&self.path).map_err(std::io::Error::other)?;
+        let mut standing = names(&self.path)?;
+        standing.retain(|name| old.as_ref().is_some_and(|old| old.has_made(&self.path, name)));
+        if let Some(mut between) = Manifest::read(&self.unfinished).map_err(std::io::Error::other)? {
+            for name in &standing {
+                let sha = file_sha256(&self.path.join(name)).map_err(std::io::Error::other)?;
+                between.earlier.insert(name.clone(), sha);
+            }
+            let write = || {
+                let mut file = Pending::create(&self.path.join(NAME))?;
+                file.push(&json_text(&between, NAME)?)?;
+                file.finish_on_disk()
+            };
+            write().map_err(std::io::Error::other)?;
+        }
+        standing.retain(|name| self.replaces(name));
+        if self.order.replace {
+            let is_ours = |name: &String| {
+                (self.is_ours)(name) && plain::is_there(&self.path.join(name)).unwrap_or(false)
+            };
+            standing.extend(names(&self.path)?.into_iter().filter(is_ours));
+        }
+        let gone: BTreeSet<String> = standing.into_iter().filter(|name| !new.contains(name)).collect();
+        for name in gone {
+            std::fs::remove_file(self.path.join(name))?;
+        }
+        if let Some(old) = old.filter(|_| self.extent == Extent::Whole) {
+            self.remove_parts(&old.parts, false)?;
+        }
+        self.remove_parts(self.journal.parts(), true)?;
+        self.remove_parts(&self.thrown_away, true)?;
+        let (manifest, files): (Vec<&String>, Vec<&String>) = new.iter().partition(|name| *name == NAME);
+        for name in files.into_iter().chain(manifest) {
+            std::fs::rename(self.unfinished.join(name), self.path.join(name))?;
+        }
+        sync_directory(&self.path)
+    }
+
+    /// Removes Retune's files from directories below that are no longer part of the work.
+    fn remove_parts(&self, earlier: &BTreeSet<String>, with_unfinished: bool) -> std::io::Result<()> {
+        let now = self.parts();
+        for name in earlier.difference(&now) {
+            // A link that was put there since the manifest was read leads to what is not ours.
+            let Ok(part) = plain::below(&self.path, name) else { continue };
+            unfinished::remove_results(&part, with_unfinished)?;
+            let mut above = Path::new(name).parent();
+            while let Some(name) = above.filter(|name| !name.as_os_str().is_empty()) {
+                let _ = std::fs::remove_dir(self.path.join(name)); // it stays if anything else is in it
+                above = name.parent();
+            }
+        }
+        Ok(())
+    }
+
+    /// Puts the new results into place and removes what the work left behind.
+    pub fn finish(self) -> Result<(), Error> {
+        self.publish()?;
+        unfinished::remove(&self.unfinished).map_err(|source| self.refused(source))
     }
 }

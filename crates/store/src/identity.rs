@@ -59,10 +59,7 @@ impl Identity {
     }
 }
 
-/// `value` as the text of a JSON file.
-///
-/// # Errors
-/// The value cannot be serialised. Numbers that are not finite become null.
+/// `value` as the text of a JSON file; numbers that are not finite become null.
 pub fn json_text(value: &impl serde::Serialize, name: &str) -> Result<String, Error> {
     let text = serde_json::to_string_pretty(value)
         .map_err(|error| Error::Output { path: name.into(), source: error.into() })?;

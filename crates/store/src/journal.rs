@@ -15,13 +15,12 @@
 mod read;
 mod record;
 
-pub use read::{Damage, Found, Known, MOST_POINTS, read};
-pub use record::{grid_text, grid_value};
+pub use read::{Damage, Known, MOST_POINTS, State, read};
+pub use record::{Seal, grid_text, grid_value};
 
 use crate::error::Error;
 use crate::identity::{Identity, hexadecimal};
 use crate::plain;
-use crate::seal::Seal;
 use record::key;
 use std::collections::BTreeSet;
 use std::fs::{File, OpenOptions};
@@ -52,9 +51,6 @@ pub struct Journal {
 
 impl Journal {
     /// Creates a journal; there must be none yet.
-    ///
-    /// # Errors
-    /// The file cannot be written.
     pub fn begin(path: &Path, identity: &Identity) -> Result<Self, Error> {
         let made = OpenOptions::new().append(true).create_new(true).open(path);
         let refuse = |source| Error::Output { path: path.to_owned(), source };
@@ -64,9 +60,6 @@ impl Journal {
     }
 
     /// Continues a journal from which `known` was read. A damaged one is first replaced by its complete records.
-    ///
-    /// # Errors
-    /// The file cannot be written.
     pub fn resume(path: &Path, identity: &Identity, known: Known, damage: Damage) -> Result<Self, Error> {
         if !damage.is_none() {
             read::mend(path, identity)?;

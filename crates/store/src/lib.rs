@@ -25,7 +25,6 @@
 //! ```
 
 mod directory;
-mod entries;
 pub mod error;
 pub mod identity;
 pub mod journal;
@@ -34,7 +33,6 @@ pub mod manifest;
 pub mod order;
 mod pending;
 pub mod plain;
-pub mod seal;
 mod unfinished;
 
 pub use directory::Directory;

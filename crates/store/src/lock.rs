@@ -7,7 +7,6 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Seek, Write};
 use std::path::{Path, PathBuf};
 
-/// The file that is locked.
 pub const NAME: &str = ".lock";
 
 /// A held lock. Its file is removed when it is dropped.

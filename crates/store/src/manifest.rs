@@ -19,8 +19,8 @@ pub type Fields = IndexMap<String, Value>;
 
 /// The origin of a directory of results.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "their names say it")]
 pub struct Manifest {
-    /// The version of Retune.
     pub retune: String,
     /// The command and the study file that made them.
     pub made_by: MadeBy,
@@ -30,7 +30,6 @@ pub struct Manifest {
     pub arithmetic: String,
     /// The integration method and its tolerances; none where studies differ in it, and then each says its own in `resolved.json`.
     pub solver: Option<Fields>,
-    /// SHA-256 of each file.
     pub files: BTreeMap<String, String>,
     /// Files of an earlier study that are still beside them, with their SHA-256.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -51,9 +50,6 @@ pub struct MadeBy {
 
 impl Manifest {
     /// Reads the manifest of a directory, if there is one.
-    ///
-    /// # Errors
-    /// As [`Self::check`].
     pub fn read(place: &Path) -> Result<Option<Self>, Error> {
         let text = plain::text(&place.join(NAME)).ok();
         let Some(manifest) = text.and_then(|text| serde_json::from_str::<Self>(&text).ok()) else {
@@ -64,9 +60,6 @@ impl Manifest {
     }
 
     /// Checks that all that the manifest of `place` names is there: files in it, parts below it.
-    ///
-    /// # Errors
-    /// A name leads elsewhere.
     pub fn check(&self, place: &Path) -> Result<(), Error> {
         let refuse = |field: &str, problem: &str| Error::Input {
             path: place.join(NAME),
@@ -103,9 +96,6 @@ impl Manifest {
 }
 
 /// SHA-256 of a plain file, in hexadecimal.
-///
-/// # Errors
-/// It cannot be read.
 pub fn file_sha256(path: &Path) -> Result<String, Error> {
     let refuse = |source| Error::Input { path: path.to_owned(), source };
     let mut file = BufReader::with_capacity(1 << 16, plain::open(path).map_err(refuse)?);

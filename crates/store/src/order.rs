@@ -4,11 +4,10 @@
 //! everyday work. Anything else it is asked to replace in so many words (`--replace`): results of another study, a file that
 //! Retune did not make, or one that was changed after it was made.
 
-use crate::entries::names;
 use crate::error::Error;
 use crate::identity::Identity;
 use crate::manifest::{MadeBy, Manifest, NAME};
-use crate::plain;
+use crate::plain::{self, names};
 use std::path::{Path, PathBuf};
 
 /// The treatment of unfinished work that is found.
@@ -123,9 +122,6 @@ impl MadeBy {
 
 /// Checks that a file may be written at `path`: an existing one is only replaced if it is a plain file, none of `inputs`, and begins
 /// with `head`, as all such files of Retune do.
-///
-/// # Errors
-/// [`Error::Protected`].
 pub fn may_write(path: &Path, inputs: &[&Path], head: &str) -> Result<(), Error> {
     let protected = |problem: &str| Error::Protected { path: path.to_owned(), problem: problem.to_owned() };
     if inputs.iter().any(|input| is_same(path, input)) {
@@ -146,8 +142,8 @@ pub fn may_write(path: &Path, inputs: &[&Path], head: &str) -> Result<(), Error>
     }
 }
 
-/// Whether both are the same file.
-fn is_same(one: &Path, other: &Path) -> bool {
+/// Whether both are the same file or directory.
+pub fn is_same(one: &Path, other: &Path) -> bool {
     let [one, other] = [one, other].map(|path| path.canonicalize().ok());
     one.is_some() && one == other
 }

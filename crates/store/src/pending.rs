@@ -1,16 +1,12 @@
 //! Files that get their name only when they are complete: written under a temporary name, then renamed.
 
-use super::entries::names;
-use super::plain;
+use super::plain::{self, names};
 use crate::error::Error;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// Removes the temporary files that killed processes have left of the file at `path`. Only whoever holds the lock of the directory may.
-///
-/// # Errors
-/// One cannot be removed.
 pub fn clear(path: &Path) -> std::io::Result<()> {
     let (Some(directory), Some(name)) = (path.parent(), path.file_name()) else { return Ok(()) };
     let begin = format!(".{}.", name.to_string_lossy());
@@ -35,9 +31,6 @@ pub struct Pending {
 
 impl Pending {
     /// Begins the file at `path`.
-    ///
-    /// # Errors
-    /// It cannot be made.
     pub fn create(path: &Path) -> Result<Self, Error> {
         let refuse = |source| Error::Output { path: path.to_owned(), source };
         let name = path.file_name().ok_or_else(|| refuse(std::io::ErrorKind::IsADirectory.into()))?;
@@ -51,26 +44,17 @@ impl Pending {
     }
 
     /// Appends `text`.
-    ///
-    /// # Errors
-    /// It cannot be written.
     pub fn push(&mut self, text: &str) -> Result<(), Error> {
         self.file.write_all(text.as_bytes()).map_err(|source| self.refused(source))
     }
 
     /// Appends `line` and hands it to the system at once, so that whoever follows the file sees it.
-    ///
-    /// # Errors
-    /// It cannot be written.
     pub fn push_line(&mut self, line: &str) -> Result<(), Error> {
         let written = writeln!(self.file, "{line}").and_then(|()| self.file.flush());
         written.map_err(|source| self.refused(source))
     }
 
     /// Gives the file its name.
-    ///
-    /// # Errors
-    /// It cannot be written or renamed.
     pub fn finish(mut self) -> Result<(), Error> {
         let named = self.file.flush().and_then(|()| std::fs::rename(&self.temporary, &self.path));
         named.map_err(|source| self.refused(source))?;
@@ -79,9 +63,6 @@ impl Pending {
     }
 
     /// Gives the file its name once it is on the disk.
-    ///
-    /// # Errors
-    /// It cannot be written or renamed.
     pub fn finish_on_disk(mut self) -> Result<(), Error> {
         let written = self.file.flush().and_then(|()| self.file.get_ref().sync_all());
         written.map_err(|source| self.refused(source))?;
@@ -89,9 +70,6 @@ impl Pending {
     }
 
     /// Gives the file its name once it is on the disk, and lets nobody write to it any more.
-    ///
-    /// # Errors
-    /// It cannot be written or renamed.
     pub fn finish_for_good(mut self) -> Result<(), Error> {
         let settle = |file: &File| {
             let mut permissions = file.metadata()?.permissions();

@@ -1,8 +1,8 @@
 //! Opening files at names that others can guess: only plain files, never what a symbolic link points to, a pipe or a device.
 
+use crate::error::Error as Refused;
 use std::fs::{File, OpenOptions};
-use std::io::Read;
-use std::io::{Error, ErrorKind, Result};
+use std::io::{Error, ErrorKind, Read, Result};
 use std::path::{Component, Path, PathBuf};
 
 /// Opens a plain file to read it.
@@ -15,13 +15,10 @@ pub fn open(path: &Path) -> Result<File> {
 }
 
 /// Reads a plain file as text.
-///
-/// # Errors
-/// As [`open`]; or it is no text.
-pub fn text(path: &Path) -> Result<String> {
+pub fn text(path: &Path) -> std::result::Result<String, Refused> {
     let mut text = String::new();
-    open(path)?.read_to_string(&mut text)?;
-    Ok(text)
+    let read = open(path).and_then(|mut file| file.read_to_string(&mut text));
+    read.map(|_| text).map_err(|source| Refused::Input { path: path.to_owned(), source })
 }
 
 /// The path of `name`, which a file says, below `directory`: of plain names, none of them a symbolic link.
@@ -60,9 +57,6 @@ pub fn open_with(path: &Path, options: &mut OpenOptions) -> Result<File> {
 }
 
 /// Makes a new file, in place of one that an earlier process left.
-///
-/// # Errors
-/// It cannot be made.
 pub fn create(path: &Path) -> Result<File> {
     let mut options = OpenOptions::new();
     options.write(true).create_new(true); // which follows no link
@@ -76,9 +70,6 @@ pub fn create(path: &Path) -> Result<File> {
 }
 
 /// Whether a plain file stands there.
-///
-/// # Errors
-/// Something else does, or it cannot be told.
 pub fn is_there(path: &Path) -> Result<bool> {
     let kind = match path.symlink_metadata() {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(false),
@@ -107,4 +98,26 @@ fn without_links(options: &mut OpenOptions) -> &mut OpenOptions {
 #[cfg(not(unix))]
 fn without_links(options: &mut OpenOptions) -> &mut OpenOptions {
     options
+}
+
+/// The names in a directory, sorted.
+pub fn names(directory: &Path) -> Result<Vec<String>> {
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(directory)? {
+        names.extend(entry?.file_name().into_string());
+    }
+    names.sort();
+    Ok(names)
+}
+
+/// Waits until the names in a directory are on the disk.
+#[cfg(unix)]
+pub(crate) fn sync_directory(path: &Path) -> Result<()> {
+    File::open(path)?.sync_all()
+}
+
+/// Elsewhere a directory cannot be waited for.
+#[cfg(not(unix))]
+pub(crate) fn sync_directory(_path: &Path) -> Result<()> {
+    Ok(())
 }

@@ -1,13 +1,12 @@
 //! Unfinished work in a directory: found, resumed or discarded.
 
-use crate::entries::names;
 use crate::error::Error;
 use crate::identity::Identity;
-use crate::journal::{self, Damage, Found, Journal, Known};
+use crate::journal::{self, Damage, Journal, Known, State};
 use crate::lock::Lock;
 use crate::manifest::{Manifest, NAME};
 use crate::order::Begin;
-use crate::plain;
+use crate::plain::{self, names};
 use std::collections::BTreeSet;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -39,10 +38,10 @@ impl Unfinished {
         let refuse = |source| Error::Input { path: path.clone(), source };
         check(&unfinished)?;
         let (of, known, damage) = match journal::read(&path, identity).map_err(refuse)? {
-            Found::Nothing => return Ok(Self::Anew(BTreeSet::new())),
-            Found::Unclear(_) if begin == Begin::Restart => return Ok(Self::Anew(BTreeSet::new())),
-            Found::Unclear(problem) => return Err(Error::Journal { path, problem }),
-            Found::Work(of, known, damage) => (of, *known, damage),
+            State::Nothing => return Ok(Self::Anew(BTreeSet::new())),
+            State::Unclear(_) if begin == Begin::Restart => return Ok(Self::Anew(BTreeSet::new())),
+            State::Unclear(problem) => return Err(Error::Journal { path, problem }),
+            State::Work(of, known, damage) => (of, *known, damage),
         };
         for part in &known.parts {
             plain::below(place, part).map_err(refuse)?;
@@ -65,9 +64,6 @@ impl Unfinished {
 
     /// Starts the run in its directory. Returns the journal, the directories below whose work is discarded, and a warning where the
     /// journal was damaged.
-    ///
-    /// # Errors
-    /// The journal cannot be written.
     pub fn take_up(
         self,
         unfinished: &Path,
@@ -95,7 +91,6 @@ impl Unfinished {
     }
 }
 
-/// The warning about a damaged journal.
 fn damaged(path: &Path, kept: u64, Damage { head, lines }: Damage) -> String {
     let first = "its first line is damaged, but its records are of this study";
     let rest = format!(
@@ -114,7 +109,7 @@ fn damaged(path: &Path, kept: u64, Damage { head, lines }: Damage) -> String {
 /// How many results the unfinished work in a directory below holds.
 fn kept(place: &Path, identity: &Identity) -> u64 {
     match journal::read(&place.join(UNFINISHED).join(JOURNAL), identity) {
-        Ok(Found::Work(_, known, _)) => known.lines,
+        Ok(State::Work(_, known, _)) => known.lines,
         _ => 0,
     }
 }
@@ -151,9 +146,6 @@ fn clear(directory: &Path, keep: impl Fn(&str) -> bool) -> std::io::Result<()> {
 }
 
 /// Removes unfinished work. Its journal is removed last: without one the directory is not recognised as Retune's.
-///
-/// # Errors
-/// A file cannot be removed.
 pub fn remove(unfinished: &Path) -> std::io::Result<()> {
     clear(unfinished, |name| name == JOURNAL)?;
     clear(unfinished, |_| false)?;
@@ -162,9 +154,6 @@ pub fn remove(unfinished: &Path) -> std::io::Result<()> {
 
 /// Removes the results that Retune made in a directory, and the directory if nothing else is in it. Everything
 /// stays where there is unfinished work that must not be removed, or where another process is at work.
-///
-/// # Errors
-/// A file cannot be removed.
 pub fn remove_results(place: &Path, with_unfinished: bool) -> std::io::Result<()> {
     let is_directory = place.symlink_metadata().is_ok_and(|metadata| metadata.is_dir());
     let Some(lock) = is_directory.then(|| Lock::take(place).ok()).flatten() else { return Ok(()) };

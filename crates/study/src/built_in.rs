@@ -28,9 +28,6 @@ pub fn is_built_in(path: &Path) -> bool {
 }
 
 /// As [`read_text`], for a plan or a study that a plan names: where there is no such file, the one built in.
-///
-/// # Errors
-/// As [`read_text`].
 pub(super) fn read_plan_text(path: &Path) -> Result<String, StudyError> {
     match text(path) {
         Some(text) if !path.exists() => Ok(text.to_owned()),

@@ -1,105 +1,41 @@
 //! From a file to the values of its fields, or to one message with the correction.
 
-use super::explain::explain;
-use super::kind::Kind;
 use super::rule::Rule;
 use super::units;
-use serde::Serialize;
+use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use serde_json::error::Category;
 use std::borrow::Cow;
 use std::path::Path;
 use thiserror::Error;
 
 /// The error of a study file.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "its words say what each is and holds")]
 pub enum StudyError {
-    /// The file does not exist or cannot be read.
     #[error("{file}: cannot be read: {source}")]
-    Unreadable {
-        /// The file.
-        file: String,
-        /// The system's reason.
-        source: std::io::Error,
-    },
-    /// The file is not text.
+    Unreadable { file: String, source: std::io::Error },
     #[error("{file}: not UTF-8 text (at byte {byte})")]
-    NotText {
-        /// The file.
-        file: String,
-        /// Offset of the first byte that is not UTF-8.
-        byte: usize,
-    },
-    /// The text is not JSON, or does not have the fields of a study.
+    NotText { file: String, byte: usize },
     #[error("{file}:{line}:{column}: {problem}")]
-    Field {
-        /// The file.
-        file: String,
-        /// Line, from 1.
-        line: usize,
-        /// Column, from 1.
-        column: usize,
-        /// The field's path and the error.
-        problem: String,
-    },
-    /// The file is of another kind.
+    Field { file: String, line: usize, column: usize, problem: String },
     #[error("{file}: its kind is `{}`, for {}; a file of kind `{}` is needed here", found.name(), found.commands(), wanted.name())]
-    Kind {
-        /// The file.
-        file: String,
-        /// Its kind.
-        found: Kind,
-        /// The kind that is needed.
-        wanted: Kind,
-    },
-    /// Values without their names.
+    Kind { file: String, found: Kind, wanted: Kind },
     #[error("{file}: {field}: wrong type: list, expected an object")]
-    List {
-        /// The file.
-        file: String,
-        /// The field's path.
-        field: String,
-    },
-    /// Each field is valid but they contradict one another.
+    List { file: String, field: String },
     #[error("{file}: {rule}")]
-    Rule {
-        /// The file.
-        file: String,
-        /// The rule that is broken.
-        rule: Rule,
-    },
-    /// Results of several dampers, where those of one are needed.
+    Rule { file: String, rule: Rule },
     #[error("{file}: holds the designs of several searches{}", .one.as_ref().map_or(", but not their studies".to_owned(), |one| format!(": give one of them, for instance {one}")))]
-    Several {
-        /// The directory.
-        file: String,
-        /// The first that can be read in their place.
-        one: Option<String>,
-    },
-    /// A directory without the results of a search.
+    Several { file: String, one: Option<String> },
     #[error("{file}: these are no results: there is no study.json in it, but {found}{}", .one.as_ref().map(|one| format!("; give a study or results, for instance {one}")).unwrap_or_default())]
-    NoResults {
-        /// The directory.
-        file: String,
-        /// What is in it.
-        found: String,
-        /// The first in it that can be read in its place.
-        one: Option<String>,
-    },
-    /// A value of the paper's plan is not allowed.
+    NoResults { file: String, found: String, one: Option<String> },
     #[error("{file}: {problem}")]
-    Paper {
-        /// The file.
-        file: String,
-        /// The field and the allowed values.
-        problem: String,
-    },
+    Paper { file: String, problem: String },
 }
 
 /// Reads a file as text, without a byte-order mark.
-///
-/// # Errors
-/// The file cannot be read or is not UTF-8.
 pub(super) fn read_text(path: &Path) -> Result<String, StudyError> {
     let file = || path.display().to_string();
     let bytes = std::fs::read(path).map_err(|source| StudyError::Unreadable { file: file(), source })?;
@@ -109,9 +45,6 @@ pub(super) fn read_text(path: &Path) -> Result<String, StudyError> {
 }
 
 /// The text with every number in its SI unit, see [`units`].
-///
-/// # Errors
-/// [`StudyError::Field`]: the first that has no unit of its field.
 pub(super) fn in_si<'a>(text: &'a str, file: &str) -> Result<Cow<'a, str>, StudyError> {
     units::in_si(text).map_err(|units::Refused { line, column, problem }| StudyError::Field {
         file: file.to_owned(),
@@ -122,9 +55,6 @@ pub(super) fn in_si<'a>(text: &'a str, file: &str) -> Result<Cow<'a, str>, Study
 }
 
 /// Parses the text of `file`; an error names the field.
-///
-/// # Errors
-/// [`StudyError::Field`].
 pub(super) fn parse<T: DeserializeOwned + Serialize>(text: &str, file: &str) -> Result<T, StudyError> {
     let refuse = |path: Option<String>, error: &serde_json::Error| StudyError::Field {
         file: file.to_owned(),
@@ -146,18 +76,12 @@ pub(super) fn parse<T: DeserializeOwned + Serialize>(text: &str, file: &str) -> 
 }
 
 /// The kind of a study file. What cannot be recognised counts as a study of one damper, whose reader says what is wrong with it.
-///
-/// # Errors
-/// The file cannot be read.
 pub fn kind_of(path: &Path) -> Result<Kind, StudyError> {
     let json: Result<Value, _> = serde_json::from_str(&read_text(path)?);
     Ok(json.ok().as_ref().and_then(Kind::of).unwrap_or_default())
 }
 
 /// Refuses the text of a file that is recognised as one of another kind.
-///
-/// # Errors
-/// [`StudyError::Kind`].
 pub(super) fn expect(wanted: Kind, text: &str, file: &str) -> Result<(), StudyError> {
     let json: Result<Value, _> = serde_json::from_str(text);
     match json.ok().as_ref().and_then(Kind::of) {
@@ -178,9 +102,167 @@ fn list_for_object(given: &Value, meant: &Value) -> Option<String> {
     }
 }
 
+/// The kind of a study file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// One structure with one damper.
+    #[default]
+    Study,
+    /// A table of dampers, each with its study and a design of the paper.
+    Table2,
+    /// Dampers under ever looser bounds.
+    Fronts,
+    /// The whole paper.
+    Paper,
+}
+
+impl Kind {
+    /// Its name, as the field `kind` of a file has it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Study => "study",
+            Self::Table2 => "table2",
+            Self::Fronts => "fronts",
+            Self::Paper => "paper",
+        }
+    }
+
+    /// The commands that take it.
+    pub const fn commands(self) -> &'static str {
+        match self {
+            Self::Study => "`retune optimize`, `certify`, `simulate`, `sweep` and `evaluate`",
+            Self::Table2 => "`retune table2` and `retune retention`",
+            Self::Fronts => "`retune fronts`",
+            Self::Paper => "`retune reproduce`, `figure` and `table`",
+        }
+    }
+
+    /// The field that only files of this kind have; a file without `kind` is recognised by it.
+    const fn field(self) -> &'static str {
+        match self {
+            Self::Study => "scene",
+            Self::Table2 => "rows",
+            Self::Fronts => "dampers",
+            Self::Paper => "table2",
+        }
+    }
+
+    /// The kind of a JSON object, by its field `kind` or else by its other fields; none of anything else.
+    pub(super) fn of(json: &Value) -> Option<Self> {
+        match json.get("kind") {
+            Some(kind) => Self::deserialize(kind).ok(),
+            None => [Self::Study, Self::Table2, Self::Fronts, Self::Paper]
+                .into_iter()
+                .find(|kind| json.get(kind.field()).is_some()),
+        }
+    }
+}
+
+/// Describes the error at the field `path` (`scene.damper.k2`), if parsing reached a field.
+pub(super) fn explain(path: Option<&str>, error: &serde_json::Error) -> String {
+    let message = message_only(error);
+    let field =
+        path.map(|path| path.strip_suffix(".?").unwrap_or(path)).filter(|path| !matches!(*path, "." | "?"));
+    if matches!(error.classify(), Category::Syntax | Category::Eof) {
+        let place = field.map(|field| format!(" at {field}")).unwrap_or_default();
+        return format!("not valid JSON{place}: {}", syntax(&message));
+    }
+    match quoted(&message).split_first() {
+        Some((name, allowed)) if message.starts_with("unknown field") => {
+            let parent = field.and_then(parent_of).map(|parent| format!("{parent}: ")).unwrap_or_default();
+            format!("{parent}unknown field `{name}`{}", suggestion(name, allowed))
+        }
+        Some((name, allowed)) if message.starts_with("unknown variant") => {
+            prefixed(field, &format!("\"{name}\" is not allowed here{}", suggestion(name, allowed)))
+        }
+        Some((name, _)) if message.starts_with("missing field") => {
+            let full = field.map_or_else(|| (*name).to_owned(), |parent| format!("{parent}.{name}"));
+            format!("{full}: missing, and it has no default")
+        }
+        Some((name, _)) if message.starts_with("duplicate field") => {
+            let full = field.map_or_else(|| (*name).to_owned(), |parent| format!("{parent}.{name}"));
+            format!("{full}: given twice")
+        }
+        _ => prefixed(field, &plain(&message)),
+    }
+}
+
+/// The message without serde_json's " at line 3 column 5", which is already given before it.
+fn message_only(error: &serde_json::Error) -> String {
+    let text = error.to_string();
+    let position = format!(" at line {} column {}", error.line(), error.column());
+    text.strip_suffix(&position).map(str::to_owned).unwrap_or(text)
+}
+
+fn prefixed(field: Option<&str>, problem: &str) -> String {
+    field.map_or_else(|| problem.to_owned(), |field| format!("{field}: {problem}"))
+}
+
+fn parent_of(path: &str) -> Option<&str> {
+    path.rsplit_once('.').map(|(parent, _)| parent)
+}
+
+/// The words between backticks.
+fn quoted(message: &str) -> Vec<&str> {
+    message.split('`').skip(1).step_by(2).collect()
+}
+
+/// A suggestion for `name`, and all allowed names.
+pub(super) fn suggestion(name: &str, allowed: &[&str]) -> String {
+    let typed = name.to_lowercase();
+    let slips = |other: &str| strsim::damerau_levenshtein(&typed, &other.to_lowercase());
+    // Of two equally near names the one of the same length: for c3 suggest c2, not C.
+    let nearest = allowed.iter().min_by_key(|other| (slips(other), other.len().abs_diff(name.len())));
+    let meant = match nearest {
+        Some(nearest) if slips(nearest) <= 1.max(name.len() / 3) => format!("did you mean `{nearest}`? "),
+        _ => String::new(),
+    };
+    format!("; {meant}allowed: {}", allowed.join(", "))
+}
+
+/// Rust's names for what was expected, in words.
+fn plain(message: &str) -> String {
+    let mut text = message.to_owned();
+    for (rust, words) in [
+        ("floating point `", "number `"),
+        ("integer `", "number `"),
+        ("expected f64", "expected a number"),
+        ("expected u64", "expected a whole number not below 0"),
+        ("expected usize", "expected a whole number not below 0"),
+        ("expected a tuple of size 2", "expected [smallest, largest]"),
+        ("invalid type: map", "invalid type: object"),
+        ("invalid type: sequence", "invalid type: list"),
+        ("expected a sequence", "expected a list"),
+        ("invalid type", "wrong type"),
+    ] {
+        text = text.replace(rust, words);
+    }
+    // "expected struct Damper with 6 elements" is of no use to the reader.
+    match text.split_once("expected struct") {
+        Some((before, _)) => format!("{before}expected an object"),
+        None => text,
+    }
+}
+
+/// serde_json's syntax messages, where they can be more helpful.
+fn syntax(message: &str) -> String {
+    match message {
+        "number out of range" => "number out of range: its magnitude must be below 1.8e308".to_owned(),
+        "expected value" => {
+            "expected a value (a number, \"text\", true, false, null, [...] or {...}; JSON has no NaN or Infinity)"
+                .to_owned()
+        }
+        "trailing characters" => "there is more text after the end of the study".to_owned(),
+        other if other.starts_with("EOF") => format!("the text ends too early ({other})"),
+        other => other.to_owned(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::json;
 
     #[test]
     fn contract_a_file_of_another_kind_is_named_with_its_commands() {
@@ -190,5 +272,14 @@ mod tests {
             "t.json: its kind is `table2`, for `retune table2` and `retune retention`; a file of kind `study` is needed here"
         );
         assert!(expect(Kind::Table2, r#"{ "rows": [] }"#, "t.json").is_ok());
+    }
+
+    #[test]
+    fn contract_a_file_says_its_kind_or_is_recognised_by_its_fields() {
+        assert_eq!(Kind::of(&json!({ "kind": "fronts", "rows": [] })), Some(Kind::Fronts));
+        assert_eq!(Kind::of(&json!({ "rows": [] })), Some(Kind::Table2));
+        assert_eq!(Kind::of(&json!({ "scene": {}, "window": {} })), Some(Kind::Study));
+        assert_eq!(Kind::of(&json!({ "kind": "fronst" })), None);
+        assert_eq!(Kind::of(&json!([1])), None);
     }
 }

@@ -1,13 +1,15 @@
 //! The study file: its fields, with their defaults. The doc comments are the descriptions of the JSON Schema.
 
+use super::file::Kind;
 use super::global::GlobalSearch;
-use super::kind::Kind;
-use super::vary;
 use retune_model::{NonNegative, Parameter, PerVariable, Positive, Scene};
 use retune_optim::{Limits, Objective, Options, Scale};
 use retune_solver::{Contacts, Method, Settings, Window};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema, schema_for};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::{Map, Value, json};
+use std::borrow::Cow;
 
 /// A study: a structure with its damper, the time window of the evaluation, and the parameters to tune. A number is in its SI unit, or a text
 /// with a unit: "20 kN/m".
@@ -18,7 +20,7 @@ pub struct Study {
     #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
     pub schema: Option<String>,
     /// "study". A file without it is recognised by its other fields.
-    #[serde(default, skip_serializing_if = "Kind::is_study")]
+    #[serde(default, skip_serializing_if = "is_default")]
     #[schemars(extend("const" = "study"))]
     pub kind: Kind,
     /// The version of Retune that wrote this file, if it was written by Retune. Ignored.
@@ -39,7 +41,7 @@ pub struct Study {
     #[serde(default)]
     pub optimize: Option<Optimize>,
     /// The margins that a robust design has.
-    #[serde(default, skip_serializing_if = "Margins::is_default")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub certificate: Margins,
 }
 
@@ -62,10 +64,9 @@ impl Default for Margins {
     }
 }
 
-impl Margins {
-    fn is_default(&self) -> bool {
-        *self == Self::default()
-    }
+/// Whether a value is the default, which files need not say.
+pub fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 /// The time window in which maxima are evaluated. Every run starts at t = 0.
@@ -107,8 +108,8 @@ pub struct Solver {
 #[serde(deny_unknown_fields)]
 pub struct Optimize {
     /// The parameters to tune; the others keep their values in `scene`.
-    #[serde(deserialize_with = "vary::read")]
-    #[schemars(schema_with = "vary::schema")]
+    #[serde(deserialize_with = "read_varied")]
+    #[schemars(schema_with = "varied_schema")]
     pub vary: Vec<Parameter>,
     /// The objective to minimise. Default: E1max in `window` at the omega of the scene.
     #[serde(default, skip_serializing_if = "Objective::is_default")]
@@ -124,7 +125,7 @@ pub struct Optimize {
     #[serde(default)]
     pub surf: Option<PerVariable<GridAxis>>,
     /// How exact the grid and the global search are, which only say where refinements start. Default: as exact as these are.
-    #[serde(default, skip_serializing_if = "Coarse::is_default")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub coarse: Coarse,
     /// A global search in addition to the grid. Default: none; `{}` selects it with its default settings.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -156,10 +157,6 @@ pub struct Coarse {
 }
 
 impl Coarse {
-    fn is_default(&self) -> bool {
-        *self == Self::default()
-    }
-
     /// The value up to which a grid is computed, in the unit of the quantity; infinite if all of it is.
     pub fn up_to(&self) -> f64 {
         self.most.unwrap_or(f64::INFINITY)
@@ -259,4 +256,82 @@ impl Default for Refine {
         let Options { tol_x, tol_fun, max_iter, max_fun_evals, .. } = Options::default();
         Self { starts: 1, apart: 3, tol_x, tol_fun, scaled: false, max_iter, max_fun_evals }
     }
+}
+
+/// One of the list.
+struct Varied(Parameter);
+
+impl<'de> Deserialize<'de> for Varied {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name = Cow::<'de, str>::deserialize(deserializer)?;
+        let unknown = || D::Error::unknown_variant(&name, &Parameter::VARIED_SYMBOLS);
+        Parameter::varied(&name).map(Self).ok_or_else(unknown)
+    }
+}
+
+/// Reads it; a parameter that no search may vary is refused.
+fn read_varied<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Parameter>, D::Error> {
+    Ok(Vec::<Varied>::deserialize(deserializer)?.into_iter().map(|Varied(parameter)| parameter).collect())
+}
+
+/// Its schema: symbols, each with its description.
+fn varied_schema(_: &mut SchemaGenerator) -> Schema {
+    let one = |parameter: Parameter| json_schema!({ "type": "string", "const": parameter.symbol(), "description": parameter.sentence() });
+    json_schema!({ "type": "array", "minItems": 1, "items": { "oneOf": Parameter::VARIED.map(one) } })
+}
+
+/// Definitions whose numbers may be texts, by their names or what these begin with. Numbers without a unit are of other types, or their texts
+/// are refused by the reader.
+const NUMBERS: [&str; 9] = [
+    "Positive",
+    "NonNegative",
+    "Finite",
+    "Margins",
+    "GridAxis",
+    "BoxSide",
+    "K1Range",
+    "Band",
+    "PerVariable_",
+];
+
+/// A number in quotes is a slip.
+const MORE_THAN_A_NUMBER: &str = "[^-+.0-9eE ]";
+
+/// The schema of a kind of file.
+pub fn schema<T: JsonSchema>() -> Schema {
+    let mut schema = schema_for!(T);
+    if let Some(Value::Object(all)) = schema.get_mut("$defs") {
+        for (name, of) in all.iter_mut() {
+            if NUMBERS.iter().any(|known| name == known || known.ends_with('_') && name.starts_with(known)) {
+                widen(of);
+            }
+        }
+    }
+    schema
+}
+
+/// Lets a text stand in the place of each number. Keywords on the size of numbers say nothing of texts.
+fn widen(schema: &mut Value) {
+    match schema {
+        Value::Object(keywords) => {
+            widen_type(keywords);
+            keywords.values_mut().for_each(widen);
+        }
+        Value::Array(all) => all.iter_mut().for_each(widen),
+        _ => {}
+    }
+}
+
+fn widen_type(keywords: &mut Map<String, Value>) {
+    let Some(of) = keywords.get_mut("type") else { return };
+    match of {
+        Value::String(one) if one == "number" => *of = json!(["number", "string"]),
+        Value::Array(several) if several.contains(&json!("number")) => several.push(json!("string")),
+        _ => return,
+    }
+    let words = keywords.get("description").and_then(Value::as_str).map(|words| format!("{words} "));
+    let words =
+        format!("{}A number in the SI unit, or a text with a unit: \"20 kN/m\".", words.unwrap_or_default());
+    keywords.insert("description".to_owned(), words.into());
+    keywords.insert("pattern".to_owned(), MORE_THAN_A_NUMBER.into());
 }

@@ -1,10 +1,10 @@
 //! The study behind `retune fronts`: dampers to tune under successively looser bounds on the spring, the stroke or the contact force.
 
 use super::built_in::read_plan_text;
+use super::file::Kind;
 use super::file::{StudyError, expect, parse};
 use super::format::Study;
-use super::kind::Kind;
-use super::objective::check_quantity;
+use super::objective::{MOST_SAMPLES, check_quantity};
 use super::read::named;
 use super::rule::Rule;
 use retune_model::{Design, Measure, PerVariable, Positive};
@@ -12,9 +12,6 @@ use retune_optim::{Limit, Parameter};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
-
-/// Largest number of band samples on which the optimised designs are re-evaluated.
-pub(super) const MOST_SAMPLES: usize = 10_000;
 
 /// Pareto fronts of dampers: the least E1max under bounds on the spring stiffness, on the stroke and on the contact force, at least one of which must be given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -225,7 +222,7 @@ pub fn read_fronts(path: &Path) -> Result<FrontsPlan, StudyError> {
     let said: Fronts = parse(&text, &file)?;
     let refuse = |field: &str, value: String, allowed| StudyError::Rule {
         file: file.clone(),
-        rule: Rule::NotAllowed { field: field.to_owned(), value, allowed },
+        rule: Rule::not_allowed(field, value, allowed),
     };
     if said.dampers.is_empty() {
         return Err(refuse("dampers", "an empty list".to_owned(), "at least one"));

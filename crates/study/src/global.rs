@@ -67,38 +67,26 @@ impl GlobalSearch {
     }
 
     /// The box that is searched.
-    ///
-    /// # Errors
-    /// The first [`Rule`] that is broken.
     pub(super) fn space(&self, variables: &[Parameter], bounds: &[Bounds]) -> Result<Space, Rule> {
-        let share = |name: &str, value: f64, good: bool| match good {
-            true => Ok(()),
-            false => Err(Rule::NotAllowed {
-                field: format!("optimize.global.{name}"),
-                value: value.to_string(),
-                allowed: "a number above 0 and at most 1",
-            }),
-        };
-        share("spread", self.spread, self.spread > 0.0 && self.spread <= 1.0)?;
-        share("basin", self.basin, self.basin > 0.0 && self.basin <= 1.0)?;
-        share("apart", self.apart, self.apart > 0.0 && self.apart <= 1.0)?;
-        let count = |name: &str, value: u64, most: u64| match value {
-            value if (1..=most).contains(&value) => Ok(()),
-            _ => Err(Rule::NotAllowed {
-                field: format!("optimize.global.{name}"),
-                value: value.to_string(),
-                allowed: "a whole number above 0 (at most 65536 samples, 1000 searches)",
-            }),
-        };
-        count("samples", self.samples.into(), 65_536)?;
-        count("searches", self.searches as u64, 1000)?;
-        count("evaluations", self.evaluations, u64::MAX)?;
+        for (name, share) in [("spread", self.spread), ("basin", self.basin), ("apart", self.apart)] {
+            if !(share > 0.0 && share <= 1.0) {
+                let field = format!("optimize.global.{name}");
+                return Err(Rule::not_allowed(field, share, "a number above 0 and at most 1"));
+            }
+        }
+        for (name, count, most) in [
+            ("samples", self.samples.into(), 65_536),
+            ("searches", self.searches as u64, 1000),
+            ("evaluations", self.evaluations, u64::MAX),
+        ] {
+            if !(1..=most).contains(&count) {
+                let allowed = "a whole number above 0 (at most 65536 samples, 1000 searches)";
+                return Err(Rule::not_allowed(format!("optimize.global.{name}"), count, allowed));
+            }
+        }
         if !(self.tolerance >= 0.0 && self.tolerance.is_finite()) {
-            return Err(Rule::NotAllowed {
-                field: "optimize.global.tolerance".to_owned(),
-                value: self.tolerance.to_string(),
-                allowed: "a finite number not below 0",
-            });
+            let allowed = "a finite number not below 0";
+            return Err(Rule::not_allowed("optimize.global.tolerance", self.tolerance, allowed));
         }
         let sides = variables.iter().zip(bounds).map(|(&variable, bounds)| self.side(variable, bounds));
         sides.collect::<Result<Vec<Side>, Rule>>().map(Space)
@@ -112,18 +100,12 @@ impl GlobalSearch {
         };
         let Side { from, to, scale } = side;
         if !(bounds.contain(from) && bounds.contain(to) && from < to && to.is_finite()) {
-            return Err(Rule::NotAllowed {
-                field: format!("optimize.global.box.{variable}"),
-                value: format!("{from} to {to}"),
-                allowed: "`from` below `to`, both within the bounds",
-            });
+            let (field, value) = (format!("optimize.global.box.{variable}"), format!("{from} to {to}"));
+            return Err(Rule::not_allowed(field, value, "`from` below `to`, both within the bounds"));
         }
         if scale == Scale::Log && from <= 0.0 {
-            return Err(Rule::NotAllowed {
-                field: format!("optimize.global.box.{variable}.from"),
-                value: from.to_string(),
-                allowed: "a number above 0 on a side of ratios (\"log\")",
-            });
+            let field = format!("optimize.global.box.{variable}.from");
+            return Err(Rule::not_allowed(field, from, "a number above 0 on a side of ratios (\"log\")"));
         }
         Ok(side)
     }

@@ -26,44 +26,33 @@
 #[cfg(any(test, fuzzing))]
 pub mod any_text;
 mod built_in;
-mod explain;
 mod file;
 mod format;
 mod fronts;
 mod global;
-mod instead;
-mod kind;
 mod objective;
 pub mod read;
 mod records;
-mod rigid;
 mod rule;
-mod schema;
 mod search;
 mod set;
-mod start;
 mod table2;
 mod units;
-mod vary;
-mod visible;
 mod window;
 mod words;
 
 pub use built_in::is_built_in;
-pub use file::{StudyError, kind_of};
-pub use format::{Coarse, GridAxis, Margins, Optimize, Refine, Solver, Span, Study};
+pub use file::{Kind, StudyError, kind_of};
+pub use format::{Coarse, GridAxis, Margins, Optimize, Refine, Solver, Span, Study, is_default, schema};
 pub use fronts::{Fronts, FrontsPlan, Sweep, bounded, read_fronts};
 pub use global::GlobalSearch;
-pub use kind::Kind;
 pub use read::{found_in, read, read_paper};
 pub use rule::Rule;
-pub use schema::schema;
 pub use search::{MOST_GRID_POINTS, Search, check_name, clipped, name_from};
-pub use set::{Settable, Setting, SettingError};
-pub use start::start;
+pub use set::{Settable, Setting, SettingError, start};
 pub use table2::{PaperStudy, SpringBounds, Table2, is_of_paper, read_rows, read_table2};
 pub use units::typed;
-pub use visible::visible;
 pub use words::{
     are, counted, design_cells, design_words, fields, frequency, hertz_and_rpm, joined, over, rounded, short,
+    visible,
 };

@@ -9,21 +9,18 @@ use retune_optim::{
 use retune_solver::Settle;
 
 /// Most samples of a band: at a third of a millisecond each, three seconds for each design.
-const MOST_SAMPLES: usize = 10_000;
+pub(super) const MOST_SAMPLES: usize = 10_000;
 /// Most starts at a frequency.
 const MOST_STARTS: usize = 1000;
 
 /// Checks the rules that serde cannot; `path` is that of this objective in the study.
-///
-/// # Errors
-/// The first [`Rule`] that is broken.
 pub(super) fn check(objective: &Objective, path: &str, scene: &Scene) -> Result<(), Rule> {
     let forcing = &scene.forcing;
     let omega = forcing.frequency.get();
     let passes = forcing.is_transient();
     let field = |name: &str| format!("{path}.{name}");
     let bad =
-        |field: String, value: String, allowed: &'static str| Err(Rule::NotAllowed { field, value, allowed });
+        |field: String, value: String, allowed: &'static str| Err(Rule::not_allowed(field, value, allowed));
     if !objective.sum.is_empty() {
         let alone = Objective { sum: Vec::new(), ..objective.clone() };
         if !alone.is_default() {
@@ -64,7 +61,9 @@ pub(super) fn check(objective: &Objective, path: &str, scene: &Scene) -> Result<
         }
         match samples {
             2..=MOST_SAMPLES => Ok(()),
-            _ => Err(Rule::Samples { field: field(name), samples, most: MOST_SAMPLES }),
+            _ => {
+                bad(field(&format!("{name}.samples")), samples.to_string(), "a whole number from 2 to 10000")
+            }
         }
     };
     if let Some(FrequencyBand { from, to, samples, relative }) = objective.omega {
@@ -124,7 +123,7 @@ pub(super) fn check(objective: &Objective, path: &str, scene: &Scene) -> Result<
 
 /// Records stand in the place of one.
 fn check_records(objective: &Objective, path: &str, own: &Forcing) -> Result<(), Rule> {
-    let bad = |field: String, value: String, allowed| Err(Rule::NotAllowed { field, value, allowed });
+    let bad = |field: String, value: String, allowed| Err(Rule::not_allowed(field, value, allowed));
     if objective.records.is_empty() {
         let allowed = "nothing without `records`, or `records` beside it";
         return bad(format!("{path}.records_by"), "a statistic".to_owned(), allowed);
@@ -151,31 +150,23 @@ fn check_records(objective: &Objective, path: &str, own: &Forcing) -> Result<(),
 }
 
 /// Refuses a study that makes another quantity than E1max small, for tables that hold energies.
-///
-/// # Errors
-/// [`Rule::NotAllowed`].
 pub(super) fn check_quantity(study: &Study) -> Result<(), Rule> {
     match study.quantity() {
         Measure::Energy => Ok(()),
-        quantity => Err(Rule::NotAllowed {
-            field: "optimize.objective.quantity".to_owned(),
-            value: quantity.name().to_owned(),
-            allowed: "E1max: the tables of this command hold energies",
-        }),
+        quantity => Err(Rule::not_allowed(
+            "optimize.objective.quantity",
+            quantity.name(),
+            "E1max: the tables of this command hold energies",
+        )),
     }
 }
 
 /// Checks the rules that serde cannot; `end` is the end of the run, s.
-///
-/// # Errors
-/// The [`Rule`] that is broken.
 pub(super) fn check_limits(limits: &Limits, end: f64) -> Result<(), Rule> {
     match limits.from {
-        Some(from) if from.get() >= end => Err(Rule::NotAllowed {
-            field: "optimize.limits.from".to_owned(),
-            value: from.get().to_string(),
-            allowed: "a time before T of `window`, s",
-        }),
+        Some(from) if from.get() >= end => {
+            Err(Rule::not_allowed("optimize.limits.from", from.get(), "a time before T of `window`, s"))
+        }
         _ => Ok(()),
     }
 }

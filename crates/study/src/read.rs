@@ -1,14 +1,12 @@
 //! From a file, or the results of a search, to a checked study.
 
 use super::built_in::{is_built_in, read_plan_text};
-use super::file::{StudyError, expect, in_si, parse, read_text};
+use super::file::{Kind, StudyError, expect, in_si, parse, read_text};
 use super::format::Study;
-use super::instead::{OPTIMUM, STUDY, instead};
-use super::kind::Kind;
-use super::records;
 use super::rule::Rule;
 use super::search::name_from;
-use super::window;
+use super::words::{counted, joined};
+use super::{records, window};
 use retune_model::{Design, Parameter};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -51,9 +49,6 @@ pub fn read(path: &Path) -> Result<Study, StudyError> {
 }
 
 /// Reads a study that a plan names, which may be built in, as [`read`] does.
-///
-/// # Errors
-/// As [`read`].
 pub(super) fn named(path: &Path) -> Result<Study, StudyError> {
     if is_built_in(path) {
         from_text(&read_plan_text(path)?, &path.display().to_string())
@@ -63,9 +58,6 @@ pub(super) fn named(path: &Path) -> Result<Study, StudyError> {
 }
 
 /// The directory of the results that a path names: itself, or that of the `optimum.json` that it is; none of a study file.
-///
-/// # Errors
-/// The file cannot be read.
 pub fn found_in(path: &Path) -> Result<Option<PathBuf>, StudyError> {
     if path.is_dir() {
         return Ok(Some(path.to_owned()));
@@ -82,11 +74,11 @@ fn design(text: &str, file: &str) -> Result<Design, StudyError> {
         |parameter: Parameter| found.get(parameter.symbol()).and_then(Value::as_f64).unwrap_or(f64::NAN);
     let refused = |parameter: Parameter| StudyError::Rule {
         file: file.to_owned(),
-        rule: Rule::NotAllowed {
-            field: parameter.to_string(),
-            value: found.get(parameter.symbol()).map_or("nothing".to_owned(), ToString::to_string),
-            allowed: "a number not below 0: the design that `retune optimize` found",
-        },
+        rule: Rule::not_allowed(
+            parameter.symbol(),
+            found.get(parameter.symbol()).map_or("nothing".to_owned(), ToString::to_string),
+            "a number not below 0: the design that `retune optimize` found",
+        ),
     };
     // Both gaps are there, or, of a damper without walls, neither.
     let gaps = [Parameter::D, Parameter::C];
@@ -98,9 +90,6 @@ fn design(text: &str, file: &str) -> Result<Design, StudyError> {
 }
 
 /// Checks the text of a study file as [`read`] does.
-///
-/// # Errors
-/// As [`read`].
 pub fn from_text(text: &str, file: &str) -> Result<Study, StudyError> {
     expect(Kind::Study, text, file)?;
     let base = Path::new(file).parent().unwrap_or(Path::new(""));
@@ -113,4 +102,76 @@ pub fn from_text(text: &str, file: &str) -> Result<Study, StudyError> {
     records::read_all(&mut study, base).map_err(|rule| StudyError::Rule { file: file.to_owned(), rule })?;
     study.check().map_err(|rule| StudyError::Rule { file: file.to_owned(), rule })?;
     Ok(study)
+}
+
+/// The file with the design that a search found, beside [`STUDY`], its study.
+pub const OPTIMUM: &str = "optimum.json";
+/// The study of results.
+pub const STUDY: &str = "study.json";
+/// The file in the place of [`STUDY`] where there are several.
+const SEVERAL: &str = "resolved.json";
+/// How many names of files are told.
+const TOLD: usize = 5;
+
+/// Why a directory without a study is not read as one.
+pub fn instead(path: &Path) -> StudyError {
+    let names = match names(path) {
+        Ok(names) => names,
+        Err(source) => return StudyError::Unreadable { file: path.display().to_string(), source },
+    };
+    let one = first_study(path, &names).or_else(|| first_below(path, &names));
+    let (file, one) = (path.display().to_string(), one.map(|one| one.display().to_string()));
+    if names.iter().any(|name| name == SEVERAL) {
+        return StudyError::Several { file, one };
+    }
+    StudyError::NoResults { file, found: told(&names), one }
+}
+
+/// The names in a directory, sorted; those of directories end in a slash.
+fn names(path: &Path) -> std::io::Result<Vec<String>> {
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(path)? {
+        let entry = entry?;
+        let slash = if entry.file_type()?.is_dir() { "/" } else { "" };
+        names.push(format!("{}{slash}", entry.file_name().to_string_lossy()));
+    }
+    names.sort();
+    Ok(names)
+}
+
+/// The names in words.
+fn told(names: &[String]) -> String {
+    match names.len() {
+        0 => "nothing".to_owned(),
+        count if count > TOLD => {
+            format!("{} and {}", joined(&names[..TOLD], ", "), counted((count - TOLD) as u64, "other"))
+        }
+        _ => joined(names, ", "),
+    }
+}
+
+/// The first study in a directory.
+fn first_study(path: &Path, names: &[String]) -> Option<PathBuf> {
+    let is_study = |file: &PathBuf| {
+        let json = read_text(file).ok().and_then(|text| serde_json::from_str(&text).ok());
+        json.is_some_and(|json| Kind::of(&json) == Some(Kind::Study))
+    };
+    names.iter().filter(|name| name.ends_with(".json")).map(|name| path.join(name)).find(is_study)
+}
+
+/// The first directory below with the results of a search.
+fn first_below(path: &Path, names: &[String]) -> Option<PathBuf> {
+    let inner: Vec<PathBuf> =
+        names.iter().filter_map(|name| Some(path.join(name.strip_suffix('/')?))).collect();
+    let below = |inner: &PathBuf| {
+        if inner.join(OPTIMUM).exists() {
+            return Some(inner.clone());
+        }
+        first_below(inner, &names_of(inner))
+    };
+    inner.iter().find_map(below)
+}
+
+fn names_of(path: &Path) -> Vec<String> {
+    names(path).unwrap_or_default()
 }

@@ -7,17 +7,11 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 /// Reads the record of a scene, if it names a file with one; a path that is not absolute begins at `base`.
-///
-/// # Errors
-/// [`Rule::Record`]: the file and what is wrong with it.
 pub(super) fn read(scene: &mut Scene, base: &Path) -> Result<(), Rule> {
     read_forcing(&mut scene.forcing, false, base)
 }
 
 /// Reads all records of a study, as [`read`] does.
-///
-/// # Errors
-/// As [`read`].
 pub(super) fn read_all(study: &mut Study, base: &Path) -> Result<(), Rule> {
     read(&mut study.scene, base)?;
     each(study, &mut |forcing| read_forcing(forcing, true, base))

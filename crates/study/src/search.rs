@@ -5,12 +5,16 @@ use super::global::GlobalSearch;
 use super::objective::{check, check_limits};
 use super::records;
 use super::rule::Rule;
-use retune_model::{Damper, Design, Forcing, PerVariable};
-use retune_optim::{Axis, Bounds, Global, Grid, Options, Parameter, Scaling, Space};
+use retune_model::{Coupled, Damper, Design, Forcing, Measure, PerVariable, Side};
+use retune_optim::{Axis, Bounds, Global, Grid, Limit, Options, Parameter, Scaling, Space};
+use retune_solver::Method;
 use std::convert::Infallible;
 
 /// Most points of a grid: at a tenth of a millisecond each, a quarter of an hour.
 pub const MOST_GRID_POINTS: usize = 10_000_000;
+
+/// What a tolerance may be.
+const FINITE: &str = "a finite number not below 0";
 
 /// A search and its settings.
 #[derive(Clone, Debug)]
@@ -35,9 +39,6 @@ pub struct Search {
 
 impl Study {
     /// Checks the rules between the fields.
-    ///
-    /// # Errors
-    /// The first [`Rule`] that is broken.
     pub fn check(&self) -> Result<(), Rule> {
         check_name(self.name())?;
         self.check_rigid()?;
@@ -53,15 +54,11 @@ impl Study {
             ("optimize.coarse.rtol", coarse),
         ] {
             if let Some(value) = rtol.filter(|rtol| !(*rtol > 0.0 && *rtol <= 0.1)) {
-                return Err(Rule::Rtol { field, value });
+                return Err(Rule::not_allowed(field, value, "a number above 0 and at most 0.1"));
             }
         }
         if let Some(most) = self.coarse().most.filter(|most| !(*most > 0.0 && most.is_finite())) {
-            return Err(Rule::NotAllowed {
-                field: "optimize.coarse.most".to_owned(),
-                value: most.to_string(),
-                allowed: "a finite number above 0",
-            });
+            return Err(Rule::not_allowed("optimize.coarse.most", most, "a finite number above 0"));
         }
         let Margins { force, errors } = self.certificate;
         for (field, value, most, allowed) in [
@@ -69,11 +66,11 @@ impl Study {
             ("certificate.errors", errors, 0.1, "a number from 0 to 0.1"),
         ] {
             if !(0.0..=most).contains(&value) {
-                return Err(Rule::NotAllowed { field: field.to_owned(), value: value.to_string(), allowed });
+                return Err(Rule::not_allowed(field, value, allowed));
             }
         }
         if !(self.solver.atol >= 0.0 && self.solver.atol.is_finite()) {
-            return Err(Rule::Atol { value: self.solver.atol });
+            return Err(Rule::not_allowed("solver.atol", self.solver.atol, FINITE));
         }
         if self.optimize.is_some() { self.search().map(drop) } else { Ok(()) }
     }
@@ -89,22 +86,16 @@ impl Study {
     }
 
     /// The search of the study.
-    ///
-    /// # Errors
-    /// The first [`Rule`] that is broken.
     pub fn search(&self) -> Result<Search, Rule> {
         let optimize = self.optimize.as_ref().ok_or(Rule::NoOptimize)?;
         let damper = self.scene.damper.ok_or(Rule::NoDamper)?;
         self.begins_at_rest()?;
         if let Some(gap) = optimize.vary.iter().find(|variable| variable.of_damper(&damper).is_none()) {
-            return Err(Rule::NotAllowed {
-                field: "optimize.vary".to_owned(),
-                value: gap.to_string(),
-                allowed: match damper.contact.and_then(|contact| contact.rigid()) {
-                    Some(_) => "what the damper has: its walls are rigid, without surfaces",
-                    None => "what the damper has: without D, C and contact it has no walls",
-                },
-            });
+            let allowed = match damper.contact.and_then(|contact| contact.rigid()) {
+                Some(_) => "what the damper has: its walls are rigid, without surfaces",
+                None => "what the damper has: without D, C and contact it has no walls",
+            };
+            return Err(Rule::not_allowed("optimize.vary", gap, allowed));
         }
         let variables = varied(&optimize.vary)?;
         check(&optimize.objective, "optimize.objective", &self.scene)?;
@@ -146,7 +137,7 @@ impl Study {
         }
         let refine = optimize.refine;
         if refine.starts == 0 {
-            return Err(Rule::NoStarts);
+            return Err(Rule::not_allowed("optimize.refine.starts", 0, "a whole number above 0"));
         }
         let options = options(optimize, bounds)?;
         let (starts, apart) = (refine.starts, refine.apart);
@@ -212,13 +203,10 @@ fn given_start(
     }
     let value = |(&variable, bounds): (&Parameter, &Bounds)| {
         let value = start.get(variable).or_else(|| variable.of_damper(damper)).unwrap_or(f64::NAN);
+        let field = || format!("optimize.starts[{i}].{variable}");
         match bounds.contain(value) {
             true => Ok(value),
-            false => Err(Rule::NotAllowed {
-                field: format!("optimize.starts[{i}].{variable}"),
-                value: value.to_string(),
-                allowed: "a value within its bounds",
-            }),
+            false => Err(Rule::not_allowed(field(), value, "a value within its bounds")),
         }
     };
     variables.iter().zip(bounds).map(value).collect()
@@ -229,7 +217,12 @@ fn bounds(given: &PerVariable<(f64, Option<f64>)>, variable: Parameter) -> Resul
     let bounds = Bounds { lower: Some(lower), upper };
     let room =
         lower >= 0.0 && lower.is_finite() && upper.is_none_or(|upper| lower < upper && upper.is_finite());
-    if room { Ok(bounds) } else { Err(Rule::Bounds { variable, bounds }) }
+    let allowed = "[smallest, largest] with 0 <= smallest < largest";
+    if room {
+        Ok(bounds)
+    } else {
+        Err(Rule::not_allowed(format!("optimize.bounds.{variable}"), bounds, allowed))
+    }
 }
 
 fn grid(
@@ -255,7 +248,7 @@ fn options(optimize: &Optimize, bounds: Vec<Bounds>) -> Result<Options, Rule> {
     let refine = optimize.refine;
     for (name, value) in [("TolX", refine.tol_x), ("TolFun", refine.tol_fun)] {
         if !(value >= 0.0 && value.is_finite()) {
-            return Err(Rule::Tolerance { name, value });
+            return Err(Rule::not_allowed(format!("optimize.refine.{name}"), value, FINITE));
         }
     }
     Ok(Options {
@@ -293,12 +286,42 @@ pub fn name_from(stem: &str) -> String {
 }
 
 /// Whether a directory of results may have this name.
-///
-/// # Errors
-/// [`Rule::Name`].
 pub fn check_name(name: &str) -> Result<(), Rule> {
     if name.is_empty() || name.starts_with('.') || !name.chars().all(is_plain) {
         return Err(Rule::Name { name: name.to_owned() });
     }
     Ok(())
+}
+
+impl Study {
+    /// Checks a study with rigid walls.
+    pub(super) fn check_rigid(&self) -> Result<(), Rule> {
+        let Some(damper) =
+            self.scene.damper.filter(|damper| damper.contact.is_some_and(|walls| walls.rigid().is_some()))
+        else {
+            return Ok(());
+        };
+        let refuse = |field: &str, value: String, allowed| Err(Rule::not_allowed(field, value, allowed));
+        if self.solver.method != Method::Hybrid {
+            let allowed = "hybrid: the walls are rigid, and a general method cannot follow impacts that take no time; or give Hertz's surfaces";
+            return refuse("solver.method", self.solver.method.name().to_owned(), allowed);
+        }
+        const FORCE: &str = "no contact force or pressure: that of an impact with a rigid wall has no bound; limit the stroke, or give Hertz's surfaces";
+        if self.quantity().is_of_walls() {
+            return refuse("optimize.objective.quantity", self.quantity().name().to_owned(), FORCE);
+        }
+        for measure in Measure::ALL.into_iter().filter(|measure| measure.is_of_walls()) {
+            if let Some(most) = self.goal().limits.get(Limit::Of(measure)) {
+                return refuse(&format!("optimize.limits.{}", measure.name()), most.to_string(), FORCE);
+            }
+        }
+        let system = Coupled::new(&self.scene.primary, &self.scene.forcing, &damper);
+        let start = system.start();
+        let inside = system.indentation(&start);
+        if Side::BOTH.iter().any(|&side| inside[side as usize] > 0.0 && !system.rests_on(side, &start)) {
+            let allowed = "a place from x1 to x1 + D + C: rigid walls let nothing in";
+            return refuse("scene.forcing.start.x2", start[2].to_string(), allowed);
+        }
+        Ok(())
+    }
 }

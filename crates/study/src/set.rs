@@ -3,7 +3,8 @@
 use super::format::Study;
 use super::rule::Rule;
 use retune_model::{
-    Absent, Design, NonNegative, OutOfRange, Parameter, Positive, Scene, Unit, Unsettable, unit,
+    Absent, Design, Finite, NonNegative, OutOfRange, Parameter, Positive, Scene, Start, Unit, Unsettable,
+    unit,
 };
 use std::str::FromStr;
 use thiserror::Error;
@@ -64,50 +65,20 @@ pub struct Setting {
 
 /// Why a setting is refused.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[expect(missing_docs, reason = "its words say what each is and holds")]
 pub enum SettingError {
-    /// There is no `=`.
     #[error("\"{text}\" is not of the form NAME=VALUE, for instance k1=30000")]
-    Form {
-        /// The text as given.
-        text: String,
-    },
-    /// No such parameter.
-    #[error("unknown parameter `{name}`{}", super::explain::suggestion(name, &symbols()))]
-    Name {
-        /// The name as given.
-        name: String,
-    },
-    /// Not a number in a unit of the parameter.
+    Form { text: String },
+    #[error("unknown parameter `{name}`{}", super::file::suggestion(name, &symbols()))]
+    Name { name: String },
     #[error("{name}: {problem}")]
-    Number {
-        /// The parameter.
-        name: Settable,
-        /// What it is, and what to give.
-        problem: String,
-    },
-    /// A number out of the parameter's range.
+    Number { name: Settable, problem: String },
     #[error("{name}: {source}")]
-    OutOfRange {
-        /// The parameter.
-        name: Settable,
-        /// Its value and the allowed values.
-        source: OutOfRange,
-    },
-    /// A parameter that the scene does not have.
+    OutOfRange { name: Settable, source: OutOfRange },
     #[error("{name}: {source}")]
-    Absent {
-        /// The parameter.
-        name: Parameter,
-        /// Why it does not have it.
-        source: Absent,
-    },
-    /// What is typed is no state.
+    Absent { name: Parameter, source: Absent },
     #[error("--from: \"{text}\" is no state: give x1,v1,x2,v2 (m, m/s), or x1,v1 alone")]
-    Start {
-        /// As given.
-        text: String,
-    },
-    /// The changed study breaks a rule.
+    Start { text: String },
     #[error(transparent)]
     Rule(#[from] Rule),
 }
@@ -198,5 +169,48 @@ impl Study {
             },
         }
         Ok(())
+    }
+}
+
+/// A state at t = 0 from `x1,v1,x2,v2` (m, m/s), or from `x1,v1`, where the damper's spring is at rest.
+pub fn start(text: &str) -> Result<Start, SettingError> {
+    let refused = || SettingError::Start { text: text.to_owned() };
+    let number = |text: &str| text.trim().parse().ok().and_then(|value| Finite::new(value).ok());
+    let numbers: Option<Vec<Finite>> = text.split(',').map(number).collect();
+    match numbers.ok_or_else(refused)?.as_slice() {
+        [x1, v1] => Ok(Start { x1: *x1, v1: *v1, ..Start::default() }),
+        [x1, v1, x2, v2] => Ok(Start { x1: *x1, v1: *v1, x2: Some(*x2), v2: *v2 }),
+        _ => Err(refused()),
+    }
+}
+
+impl Study {
+    /// Refuses a scene whose forced motion does not begin at rest, for whoever compares with runs from rest.
+    pub fn begins_at_rest(&self) -> Result<(), Rule> {
+        match self.scene.forcing.start {
+            None => Ok(()),
+            Some(_) => Err(Rule::not_allowed(
+                "scene.forcing.start",
+                "a start beside a force",
+                "none, for this compares with runs from rest; `simulate` and `sweep` begin anywhere",
+            )),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contract_a_start_is_two_or_four_numbers() {
+        let state = start("0.1, -2e-1,0.3,4").expect("a start");
+        assert_eq!([state.x1.get(), state.v1.get(), state.v2.get()], [0.1, -0.2, 4.0]);
+        assert_eq!(state.x2.map(Finite::get), Some(0.3));
+        assert_eq!(start("1,2").expect("a start").x2, None);
+        for text in ["", "1", "1,2,3", "1,2,3,4,5", "a,b", "1,inf"] {
+            let said = start(text).expect_err(text).to_string();
+            assert!(said.contains("give x1,v1,x2,v2"), "{said}");
+        }
     }
 }

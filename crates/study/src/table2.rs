@@ -1,11 +1,9 @@
 //! The study behind Table 2: each damper's own study, beside the design the paper gives for it.
 
 use super::built_in::{PLACE, read_plan_text, text};
-use super::file::{StudyError, expect, parse};
-use super::format::Study;
-use super::fronts::MOST_SAMPLES;
-use super::kind::Kind;
-use super::objective::check_quantity;
+use super::file::{Kind, StudyError, expect, parse};
+use super::format::{Study, is_default};
+use super::objective::{MOST_SAMPLES, check_quantity};
 use super::read::{from_text, named};
 use super::rule::Rule;
 use retune_model::{Damper, Design, Positive};
@@ -28,7 +26,7 @@ pub struct Table2 {
     #[schemars(length(min = 1))]
     pub rows: Vec<PaperRow>,
     /// For `retune retention`: the bounds on k2 where a damper is tuned anew for another k1.
-    #[serde(default, skip_serializing_if = "SpringBounds::is_default")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub k2_bounds: SpringBounds,
     /// For `retune retention`: number of band samples on which the designs are re-evaluated, so that they are compared on the same
     /// frequencies. Default: those of each study.
@@ -46,13 +44,6 @@ pub enum SpringBounds {
     Scaled,
     /// They stay as they are.
     Fixed,
-}
-
-impl SpringBounds {
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
-    fn is_default(&self) -> bool {
-        *self == Self::default()
-    }
 }
 
 fn kind() -> Kind {
@@ -97,9 +88,6 @@ pub fn read_table2(path: &Path) -> Result<Vec<PaperStudy>, StudyError> {
 }
 
 /// Reads a table with its studies, each with the paper's design in its scene.
-///
-/// # Errors
-/// As [`read_table2`].
 pub fn read_rows(path: &Path) -> Result<(Table2, Vec<PaperStudy>), StudyError> {
     let file = path.display().to_string();
     let text = read_plan_text(path)?;
@@ -109,8 +97,7 @@ pub fn read_rows(path: &Path) -> Result<(Table2, Vec<PaperStudy>), StudyError> {
     let directory = path.parent().unwrap_or(Path::new(""));
     let mut rows: Vec<PaperStudy> = Vec::new();
     if let Some(samples) = table.samples.filter(|samples| !(2..=MOST_SAMPLES).contains(samples)) {
-        let (field, value) = ("samples".to_owned(), samples.to_string());
-        return Err(refuse(Rule::NotAllowed { field, value, allowed: "a whole number from 2 to 10000" }));
+        return Err(refuse(Rule::not_allowed("samples", samples, "a whole number from 2 to 10000")));
     }
     for row in &table.rows {
         let study_file = directory.join(&row.study);

@@ -20,16 +20,13 @@ const DEEPEST: usize = 128;
 
 /// The text with every number that has a unit as one in its SI unit. A text that is not JSON comes back as it is, as far as it is none: the
 /// parser says what is wrong with it.
-///
-/// # Errors
-/// The first that is [`Refused`].
 pub(super) fn in_si(text: &str) -> Result<Cow<'_, str>, Refused> {
     let mut scan = Scan { text, at: 0, path: Vec::new(), found: Vec::new() };
     // What stops early is told by the parser.
     let _ = scan.value();
     let whole: Option<Value> = if scan.found.is_empty() { None } else { serde_json::from_str(text).ok() };
     let (mut out, mut copied) = (String::new(), 0);
-    for Found { span, path } in &scan.found {
+    for Text { span, path } in &scan.found {
         let token = &text[span.clone()];
         let Ok(typed) = serde_json::from_str::<String>(token) else { continue };
         let Some(units) = units(path, whole.as_ref()) else { continue };
@@ -143,7 +140,7 @@ impl Step {
 }
 
 /// A text that is a value: where it stands, its quotes included, and the path to it.
-struct Found {
+struct Text {
     span: std::ops::Range<usize>,
     path: Vec<Step>,
 }
@@ -153,7 +150,7 @@ struct Scan<'a> {
     text: &'a str,
     at: usize,
     path: Vec<Step>,
-    found: Vec<Found>,
+    found: Vec<Text>,
 }
 
 impl Scan<'_> {
@@ -167,7 +164,7 @@ impl Scan<'_> {
             b'[' => self.inside(b']', |_, i| Some(Step::Item(i))),
             b'"' => {
                 let span = self.word()?;
-                self.found.push(Found { span, path: self.path.clone() });
+                self.found.push(Text { span, path: self.path.clone() });
                 Some(())
             }
             _ => {

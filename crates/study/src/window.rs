@@ -1,8 +1,7 @@
 //! A window that follows the structure: `"window": "settled"`.
 
-use crate::Rule;
 use crate::format::Span;
-use crate::records;
+use crate::{Rule, records};
 use retune_model::{NonNegative, Positive, Scene};
 use serde::Deserialize;
 use serde_json::Value;
@@ -21,9 +20,6 @@ const MOST_PERIODS: f64 = 10_000.0;
 impl Span {
     /// The window that begins once the slowest transient of a scene, with its walls open, is below [`LEFT`] of its start, and lasts 50
     /// periods of the force; of a free decay, from the start until then, and of a pulse or a record as long after its end.
-    ///
-    /// # Errors
-    /// Nothing damps the scene enough.
     pub fn settled(scene: &Scene) -> Result<Self, Rule> {
         let rate = scene.slowest_decay();
         let period = TAU / scene.forcing.frequency.get();
@@ -34,11 +30,11 @@ impl Span {
         let [t0, end] = [NonNegative::new(span[0]).ok(), NonNegative::new(span[1]).ok()];
         match (t0, end.and_then(|end| Positive::new(end.get()).ok())) {
             (Some(t0), Some(end)) if passes || until <= MOST_PERIODS * period => Ok(Self { t0, end }),
-            _ => Err(Rule::NotAllowed {
-                field: "window".to_owned(),
-                value: format!("settled, of a scene whose slowest transient decays by {rate} 1/s"),
-                allowed: "a scene that settles in 10,000 periods of its force: give t0 and T, or more damping",
-            }),
+            _ => Err(Rule::not_allowed(
+                "window",
+                format!("settled, of a scene whose slowest transient decays by {rate} 1/s"),
+                "a scene that settles in 10,000 periods of its force: give t0 and T, or more damping",
+            )),
         }
     }
 }

@@ -13,7 +13,6 @@ use retune_study::Margins;
 
 /// How far forces are followed down, as a share of the own: below it, for where a motion begins says how a parameter moves that.
 const DOWN: f64 = 0.9;
-/// The parameters whose errors are tried.
 const PARAMETERS: [Parameter; 8] = [
     Parameter::K1,
     Parameter::C1,

@@ -37,7 +37,6 @@ const STEADY: Settle = Settle { periods: 10, blocks: 3, tolerance: 1e-9 };
 /// Which designs are looked at from other starts than rest.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum OtherStarts {
-    /// All.
     Always,
     /// Those whose verdict may depend on it.
     WhereTheyDecide,
@@ -63,10 +62,6 @@ const INEXACT: [Parameter; 16] = [
     Parameter::Restitution,
 ];
 
-/// Makes all measurements and the certificate.
-///
-/// # Errors
-/// The design itself has no value, or its worst run cannot be followed.
 pub(super) fn measure(study: &Study, damper: &Damper, others: OtherStarts) -> Result<Certificate, Error> {
     let (goal, settings) = (study.goal(), study.solver.settings());
     let (own, known) = goal.known(&study.scene, &settings)?;
@@ -235,7 +230,6 @@ struct Outcome {
 }
 
 impl Outcome {
-    /// Of a scene that cannot be run.
     const NOTHING: Self = Self { energy: f64::INFINITY, reached: PerLimit::all(0.0) };
 
     fn of(found: Result<Evaluation, Unusable>) -> Self {

@@ -22,8 +22,7 @@ const FOLLOWED: f64 = 0.8;
 /// A motion counts that has by this factor more than the runs from rest.
 pub(super) const NOTABLE: f64 = 1.05;
 
-/// What was found.
-pub(super) struct Found {
+pub(super) struct Coexisting {
     pub motions: Motions,
     /// None where the force has no amplitude.
     pub margin: Option<Margin>,
@@ -37,7 +36,6 @@ pub(super) struct Place {
     goal: Goal,
     band: [f64; 2],
     starts: usize,
-    /// The value of the runs from rest.
     pub from_rest: f64,
 }
 
@@ -49,16 +47,13 @@ pub(super) struct AtForce {
 }
 
 /// Finds them, with the largest value of every measure over all. None where there is nothing to find: the force has no period, or the damper strikes nothing.
-///
-/// # Errors
-/// A scene in the band cannot be run.
 pub(super) fn coexisting(
     scene: &Scene,
     own: &Evaluation,
     goal: &Goal,
     settings: &Settings,
     needed: Margins,
-) -> Result<Option<Found>, Unusable> {
+) -> Result<Option<Coexisting>, Unusable> {
     let strikes = scene.damper.is_some_and(|damper| damper.contact.is_some());
     if !strikes || scene.forcing.is_transient() {
         return Ok(None);
@@ -110,7 +105,7 @@ pub(super) fn coexisting(
     k1_of.sort_by(f64::total_cmp);
     k1_of.dedup();
     let most = all.into_iter().max_by(|a, b| a.ratio().total_cmp(&b.ratio()));
-    Ok(most.map(|most| Found { motions: Motions { k1_of, ..most }, margin, reached }))
+    Ok(most.map(|most| Coexisting { motions: Motions { k1_of, ..most }, margin, reached }))
 }
 
 /// The places of all terms. Of a range of stiffnesses, its ends and that of the worst run.
@@ -151,7 +146,6 @@ impl Place {
         Plan { samples: SAMPLES, starts: self.starts, ..Plan::over(Parameter::Omega, self.band) }
     }
 
-    /// The motions for a multiple of the force.
     fn at(&self, times: f64, settings: &Settings) -> Result<AtForce, Unusable> {
         let scene = with_force(&self.scene, times)?;
         // A steady motion whose damper reaches a wall there has no value: that of the linear one is compared with.

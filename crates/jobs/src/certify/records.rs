@@ -1,15 +1,16 @@
 //! The value of a design under other records than those of its study: the other sign, other draws, fewer samples.
 
-use super::certificate::{Certificate, Found, Records, UnderRecord};
+use super::certificate::verdict::or_none;
+use super::walls::Outcome;
 use crate::Error;
+use crate::amount::Amount;
 use rayon::prelude::*;
 use retune_model::{Forcing, History, Scene, Source};
-use retune_study::Study;
+use retune_study::{Study, joined};
+use serde::Serialize;
 
-/// Other draws of a random force.
 const DRAWS: u64 = 5;
 
-/// How records are changed.
 #[derive(Clone, Copy)]
 enum Change {
     Sign,
@@ -41,13 +42,13 @@ impl Change {
     }
 }
 
-/// The design of a certificate under other records; none where its study has no record.
-pub(super) fn other_records(study: &Study, certificate: &Certificate) -> Option<Records> {
+/// A design with its own value under other records; none where its study has no record.
+pub(super) fn other_records(study: &Study, own: Amount) -> Option<Records> {
     study.scene.forcing.history()?;
     let draws = (1..=DRAWS).map(Change::Draw);
     let changes: Vec<Change> = [Change::Sign, Change::Samples].into_iter().chain(draws).collect();
     let under: Vec<UnderRecord> = changes.into_par_iter().filter_map(|change| under(study, change)).collect();
-    (!under.is_empty()).then(|| Records::new(certificate.value, under))
+    (!under.is_empty()).then(|| Records::new(own, under))
 }
 
 fn under(study: &Study, change: Change) -> Option<UnderRecord> {
@@ -62,6 +63,33 @@ fn under(study: &Study, change: Change) -> Option<UnderRecord> {
     let found = |scene: &Scene| goal.evaluate(scene, &study.solver.settings(), f64::INFINITY);
     any.then(|| UnderRecord {
         under: change.words(),
-        found: Found::new(found(&scene).map_err(Error::from), !goal.limits.is_empty()),
+        found: Outcome::new(found(&scene).map_err(Error::from), !goal.limits.is_empty()),
     })
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub struct Records {
+    words: String,
+    each: Vec<UnderRecord>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub struct UnderRecord {
+    pub under: String,
+    #[serde(flatten)]
+    pub found: Outcome,
+}
+
+impl Records {
+    /// Of a design with its own value.
+    pub fn new(Amount { quantity, value, .. }: Amount, each: Vec<UnderRecord>) -> Self {
+        let others = each.iter().map(|one| format!("{} {}", or_none(one.found.value, quantity), one.under));
+        let others = joined(&others.collect::<Vec<_>>(), ", ");
+        let words = format!("{} {}; {others}", quantity.name(), or_none(value, quantity));
+        Self { words, each }
+    }
+
+    pub fn words(&self) -> &str {
+        &self.words
+    }
 }

@@ -1,22 +1,30 @@
 //! The value of a design between other walls than those of its study: walls that lose more or less, softer ones and stiffer ones.
 
-use super::certificate::{AtRestitution, AtStiffness, Certificate, Found, Walls};
+use super::certificate::measured::Sensitivity;
+use super::certificate::verdict::or_none;
 use crate::Error;
+use crate::amount::{Amount, measured};
 use rayon::prelude::*;
 use retune_model::{Contact, Damper, Loss, Measure, Parameter, Scene};
-use retune_optim::{Goal, Limits, Response, Unusable};
-use retune_study::Study;
+use retune_optim::{Evaluation, Goal, Limits, Response, Unusable};
+use retune_study::{Study, joined};
+use serde::Serialize;
 
 /// Restitutions, each the same at every speed; the first is that of walls that lose nothing.
 const RESTITUTIONS: [f64; 5] = [1.0, 0.9, 0.8, 0.7, 0.6];
 /// Multiples of the stiffness K of both walls.
 const FACTORS: [f64; 2] = [0.5, 2.0];
 
-/// The design of a certificate between other walls; none where it touches none, or its steady motion has a value only away from them.
-pub(super) fn other_walls(study: &Study, certificate: &Certificate) -> Option<Walls> {
+/// A design with its own value, and what errors of its parameters make of it, between other walls; none where it touches none, or its steady motion has a value only away from them.
+pub(super) fn other_walls(
+    study: &Study,
+    own: Amount,
+    sensitivity: &[Sensitivity],
+    strikes: bool,
+) -> Option<Walls> {
     let (scene, goal) = (&study.scene, study.goal());
     scene.damper?.contact?;
-    if goal.objective.is_steady() || !(certificate.strikes() || touches(study)) {
+    if goal.objective.is_steady() || !(strikes || touches(study)) {
         return None;
     }
     // Each with a loss in place of those that the objective has, or with the study's own.
@@ -25,7 +33,7 @@ pub(super) fn other_walls(study: &Study, certificate: &Certificate) -> Option<Wa
     let settings = study.solver.settings();
     let found = |goal: &Goal, scene: Result<Scene, Unusable>| {
         let found = scene.and_then(|scene| goal.evaluate(&scene, &settings, f64::INFINITY));
-        Found::new(found.map_err(Error::from), !goal.limits.is_empty())
+        Outcome::new(found.map_err(Error::from), !goal.limits.is_empty())
     };
     let at = |&restitution: &f64| AtRestitution {
         restitution,
@@ -40,7 +48,7 @@ pub(super) fn other_walls(study: &Study, certificate: &Certificate) -> Option<Wa
         || RESTITUTIONS.par_iter().map(at).collect(),
         || FACTORS.par_iter().filter_map(softer).collect(),
     );
-    Some(Walls::new(study, certificate.value, &certificate.sensitivity, restitutions, stiffness))
+    Some(Walls::new(study, own, sensitivity, restitutions, stiffness))
 }
 
 /// Whether the damper touches a wall in a run from rest over the band of the objective; said to, where that cannot be told.
@@ -66,4 +74,218 @@ fn with_restitution(mut scene: Scene, restitution: f64) -> Result<Scene, Unusabl
 fn with(mut scene: Scene, parameter: Parameter, value: f64) -> Result<Scene, Unusable> {
     parameter.set(&mut scene, value).map_err(|source| Unusable::Value { parameter, source })?;
     Ok(scene)
+}
+
+/// Growth of the value above which the design should be tuned for all restitutions.
+const GROWTH: f64 = 0.1;
+
+/// A design between walls that lose more or less, and between softer and stiffer ones.
+#[derive(Clone, Debug, Serialize)]
+pub struct Walls {
+    contacts: String,
+    /// From walls that lose nothing on; each in the place of the loss of the study.
+    restitutions: Vec<AtRestitution>,
+    /// Not of rigid walls.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    stiffness: Vec<AtStiffness>,
+}
+
+/// The value with a restitution that is the same at every speed.
+#[derive(Clone, Debug, Serialize)]
+pub struct AtRestitution {
+    pub restitution: f64,
+    #[serde(flatten)]
+    pub found: Outcome,
+}
+
+/// The value with a multiple of the stiffness K of both walls.
+#[derive(Clone, Debug, Serialize)]
+pub struct AtStiffness {
+    pub factor: f64,
+    #[serde(flatten)]
+    pub found: Outcome,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub struct Outcome {
+    /// The objective, in the unit of its quantity; null where it has none.
+    pub value: f64,
+    /// Of the worst run, rad/s.
+    pub omega: f64,
+    /// Where the study has limits.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    keeps_limits: Option<bool>,
+    /// Runs that should have settled and did not: their value is that of the window.
+    #[serde(skip_serializing_if = "retune_study::is_default")]
+    unsettled: u64,
+    /// Why there is no value.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reason: Option<String>,
+}
+
+impl Outcome {
+    /// Of a design under the limits of its study, if it has any.
+    pub fn new(found: Result<Evaluation, Error>, limits: bool) -> Self {
+        let none =
+            Self { value: f64::INFINITY, omega: f64::NAN, keeps_limits: None, unsettled: 0, reason: None };
+        match found {
+            Ok(found) => Self {
+                value: found.value,
+                omega: found.worst.scene.forcing.frequency.get(),
+                keeps_limits: limits.then_some(found.violation == 0.0),
+                unsettled: found.unsettled,
+                reason: None,
+            },
+            Err(error) => Self { reason: Some(error.to_string()), ..none },
+        }
+    }
+}
+
+impl AtRestitution {
+    fn place(&self) -> String {
+        format!("at e = {}", self.restitution)
+    }
+}
+
+impl AtStiffness {
+    fn place(&self) -> String {
+        format!("with {} K", self.factor)
+    }
+}
+
+impl Walls {
+    /// Of a design with its own value, and what errors of its parameters make of it.
+    pub fn new(
+        study: &Study,
+        own: Amount,
+        sensitivity: &[Sensitivity],
+        restitutions: Vec<AtRestitution>,
+        stiffness: Vec<AtStiffness>,
+    ) -> Self {
+        let mut walls = Self { contacts: String::new(), restitutions, stiffness };
+        walls.contacts = walls.said(study, own, sensitivity);
+        walls
+    }
+
+    pub fn words(&self) -> &str {
+        &self.contacts
+    }
+
+    pub fn all(&self) -> Vec<(String, &Outcome)> {
+        let restitutions = self.restitutions.iter().map(|one| (one.place(), &one.found));
+        restitutions.chain(self.stiffness.iter().map(|one| (one.place(), &one.found))).collect()
+    }
+
+    /// The restitution with the largest value; of several the largest restitution. None where none has a value.
+    pub fn worst(&self) -> Option<&AtRestitution> {
+        let known = self.restitutions.iter().filter(|one| one.found.value.is_finite());
+        known.reduce(|worst, one| if one.found.value > worst.found.value { one } else { worst })
+    }
+
+    fn said(&self, study: &Study, own: Amount, sensitivity: &[Sensitivity]) -> String {
+        let mut words = self.largest(study, own, sensitivity);
+        let quantity = own.quantity;
+        if !self.stiffness.is_empty() {
+            let each = self.stiffness.iter();
+            let each = each.map(|one| format!("{} {}", or_none(one.found.value, quantity), one.place()));
+            words += &format!("; {}, the stiffness of both walls", joined(&each.collect::<Vec<_>>(), ", "));
+        }
+        words += &self.reservations();
+        if self.worst().is_some_and(|worst| worst.found.value > (1.0 + GROWTH) * own.value) {
+            let law = match Parameter::Restitution.of(&study.scene) {
+                Some(_) => "",
+                None => "give `contact.loss` a restitution alone and ",
+            };
+            words += &format!(
+                "; {law}tune for all of these restitutions: `objective.restitution` (studies/ssvi-hedged.json)"
+            );
+        }
+        words
+    }
+
+    /// The value without loss and the largest, and of what that is the largest.
+    fn largest(
+        &self,
+        study: &Study,
+        Amount { quantity, value: own, .. }: Amount,
+        sensitivity: &[Sensitivity],
+    ) -> String {
+        let lossless = self.restitutions.first().map_or(f64::NAN, |one| one.found.value);
+        let lossless = format!("{} {} without loss", quantity.name(), or_none(lossless, quantity));
+        let all = self.restitutions.iter().map(|one| one.restitution.to_string());
+        let all = joined(&all.collect::<Vec<_>>(), ", ");
+        let Some(AtRestitution { restitution, found }) = self.worst() else {
+            return format!("{lossless}, and none at the restitutions {all}");
+        };
+        let motions = study.objective().terms().iter().any(|(_, term)| term.response == Response::Motions);
+        let runs = if motions { "" } else { " in runs from rest" };
+        let which = format!("the largest of the restitutions {all}{runs}, not a bound");
+        if *restitution == 1.0 {
+            return format!("{lossless}, {which}");
+        }
+        let less = |one: &Sensitivity| one.worst < found.value;
+        let more = found.value > own && sensitivity.iter().all(less);
+        let more = if more { ", more than any parameter off by 1 % gives" } else { "" };
+        format!("{lossless}, {} at e = {restitution}{more}: {which}", measured(found.value, quantity))
+    }
+
+    /// What is to be known of single values.
+    fn reservations(&self) -> String {
+        let all = self.all();
+        let places = |is: fn(&Outcome) -> bool| {
+            let those = all.iter().filter(|(_, found)| is(found)).map(|(place, _)| place.as_str());
+            joined(&those.collect::<Vec<_>>(), ", ")
+        };
+        let mut words = String::new();
+        for (place, Outcome { value, reason, .. }) in &all {
+            if !value.is_finite() {
+                let reason = reason.as_ref().map_or(String::new(), |reason| format!(" ({reason})"));
+                words += &format!("; no value {place}{reason}");
+            }
+        }
+        for (what, places) in [
+            ("a limit is broken", places(|found| found.keeps_limits == Some(false))),
+            ("runs had not settled", places(|found| found.unsettled > 0)),
+        ] {
+            if !places.is_empty() {
+                words += &format!("; {what} {places}");
+            }
+        }
+        words
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(value: f64) -> Outcome {
+        Outcome { value, omega: 6.0, keeps_limits: None, unsettled: 0, reason: None }
+    }
+
+    #[test]
+    fn contract_what_has_no_value_or_breaks_a_limit_is_told() {
+        let at = |restitution, found| AtRestitution { restitution, found };
+        let none = Outcome { reason: Some("too many steps".to_owned()), ..found(f64::INFINITY) };
+        let broken = Outcome { keeps_limits: Some(false), ..found(300.0) };
+        let late = Outcome { unsettled: 2, ..found(1.0) };
+        let mut walls = Walls {
+            contacts: String::new(),
+            restitutions: vec![
+                at(1.0, found(200.0)),
+                at(0.9, none),
+                at(0.8, broken.clone()),
+                at(0.7, broken),
+            ],
+            stiffness: vec![AtStiffness { factor: 2.0, found: late }],
+        };
+        assert_eq!(
+            walls.reservations(),
+            "; no value at e = 0.9 (too many steps); a limit is broken at e = 0.8, at e = 0.7; runs had not settled with 2 K"
+        );
+        assert_eq!(walls.worst().map(|worst| worst.restitution), Some(0.8));
+        walls.restitutions.truncate(1);
+        walls.restitutions.push(at(0.9, found(f64::NAN)));
+        assert_eq!(walls.reservations(), "; no value at e = 0.9; runs had not settled with 2 K");
+    }
 }

@@ -3,9 +3,8 @@
 use super::Formula;
 use super::candidate::{Candidate, What};
 use super::comparison::Comparison;
-use super::question::{broken_at_spaces, limit};
-use super::requirements::{Dampers, Requirements, Wish};
-use super::words::{alike, frequency, legible, parameters, percent, sized, tuning};
+use super::requirements::{Constraint, Dampers, Requirements};
+use super::words::{alike, broken_at_spaces, frequency, legible, limit, parameters, percent, sized, tuning};
 use retune_model::Measure;
 use retune_optim::{Limit, Need};
 use retune_study::{counted, rounded};
@@ -14,7 +13,6 @@ use std::path::Path;
 /// A value from rest on that exceeds a limit by more than this share is told.
 const ABOVE: f64 = 1e-3;
 
-/// The whole answer on screen.
 pub(super) fn answer(requirements: &Requirements, compared: &Comparison, out: &Path) -> String {
     let broken = broken_at_spaces();
     let fill = |line: String| textwrap::fill(&line, &broken);
@@ -33,10 +31,13 @@ fn next(compared: &Comparison) -> String {
 /// The rows of the comparison: a quantity, what is allowed of it, and the value and the place of each candidate.
 pub(super) fn rows(requirements: &Requirements, compared: &Comparison) -> Vec<Vec<String>> {
     let row = |measure: Measure| {
-        let wish = Wish::Of(Limit::Of(measure));
-        let allowed = requirements.allowed(wish);
-        let allowed =
-            if allowed.is_nan() { String::new() } else { format!(" <= {}", sized(allowed, wish.unit())) };
+        let constraint = Constraint::Of(Limit::Of(measure));
+        let allowed = requirements.allowed(constraint);
+        let allowed = if allowed.is_nan() {
+            String::new()
+        } else {
+            format!(" <= {}", sized(allowed, constraint.unit()))
+        };
         let first = format!("{}{allowed}", measure.name().replace('_', " "));
         let values: Vec<f64> = compared.all().map(|of| of.value(measure)).collect();
         let cell = |(of, value): (&Candidate, String)| {
@@ -60,7 +61,6 @@ pub(super) fn rows(requirements: &Requirements, compared: &Comparison) -> Vec<Ve
     rows
 }
 
-/// The comparison on screen.
 fn table(requirements: &Requirements, compared: &Comparison) -> String {
     let head: Vec<String> = std::iter::once("largest, where".to_owned())
         .chain(compared.all().map(|of| of.what.name().to_owned()))
@@ -83,19 +83,16 @@ fn table(requirements: &Requirements, compared: &Comparison) -> String {
 
 /// Which damper to build, and why.
 pub(super) fn build(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
-    let goal = compared.goal;
     let Some(chosen) = compared.chosen() else { return infeasible(requirements, compared) };
+    let goal = compared.goal;
+    let said = |goal_of: f64| sized(goal_of, goal.unit());
+    let (name, own) = (goal.name(), said(chosen.goal));
     let times = compared.none.goal / chosen.goal;
     let reduction = if times.is_finite() {
-        format!(
-            "{} falls from {} to {}, {} times less",
-            goal.name(),
-            sized(compared.none.goal, goal.unit()),
-            sized(chosen.goal, goal.unit()),
-            rounded(times, 3)
-        )
+        let (none, times) = (said(compared.none.goal), rounded(times, 3));
+        format!("{name} falls from {none} to {own}, {times} times less")
     } else {
-        format!("{} is {}, and has no bound without a damper", goal.name(), sized(chosen.goal, goal.unit()))
+        format!("{name} is {own}, and has no bound without a damper")
     };
     let why = match (chosen.what, &compared.ssvi, requirements.dampers) {
         (_, _, Dampers::Tmd) => String::new(),
@@ -103,7 +100,7 @@ pub(super) fn build(requirements: &Requirements, compared: &Comparison) -> Vec<S
             "; no SSVI NES was found that keeps the limits".to_owned()
         }
         (What::Tmd, Some(ssvi), _) if ssvi.goal < chosen.goal => {
-            let has = format!("; an SSVI NES has {}", sized(ssvi.goal, goal.unit()));
+            let has = format!("; an SSVI NES has {}", said(ssvi.goal));
             match &compared.ssvi_certificate {
                 Some(certificate) => {
                     format!("{has}, but cannot be trusted: {}", legible(certificate.reason()))
@@ -114,28 +111,25 @@ pub(super) fn build(requirements: &Requirements, compared: &Comparison) -> Vec<S
                 }
             }
         }
-        (What::Tmd, Some(ssvi), _) => format!(
-            "; the best SSVI NES that was found has {}, {} times as much, and strikes its walls with {}",
-            sized(ssvi.goal, goal.unit()),
-            rounded(ssvi.goal / chosen.goal, 3),
-            sized(ssvi.value(Measure::ContactForce), "N")
-        ),
+        (What::Tmd, Some(ssvi), _) => {
+            let (has, times) = (said(ssvi.goal), rounded(ssvi.goal / chosen.goal, 3));
+            let force = sized(ssvi.value(Measure::ContactForce), "N");
+            format!(
+                "; the best SSVI NES that was found has {has}, {times} times as much, and strikes its walls with {force}"
+            )
+        }
         (What::Tmd, None, _) => {
             "; of the SSVI NES that were tried, none that strikes its walls comes near".to_owned()
         }
-        (_, _, Dampers::Ssvi) => format!("; the best TMD has {}", sized(compared.tmd.goal, goal.unit())),
+        (_, _, Dampers::Ssvi) => format!("; the best TMD has {}", said(compared.tmd.goal)),
         _ if compared.tmd.feasible => {
-            format!(
-                "; the best TMD has {}, {} times as much",
-                sized(compared.tmd.goal, goal.unit()),
-                rounded(compared.tmd.goal / chosen.goal, 3)
-            )
+            let (has, times) = (said(compared.tmd.goal), rounded(compared.tmd.goal / chosen.goal, 3));
+            format!("; the best TMD has {has}, {times} times as much")
         }
         _ => "; no TMD of this mass keeps the limits".to_owned(),
     };
-    let name = chosen.what.name();
     let mut lines = vec![
-        format!("Build the {name}: {}.", parameters(chosen)),
+        format!("Build the {}: {}.", chosen.what.name(), parameters(chosen)),
         format!("  Alone, on a rigid support, it has {}. {reduction}{why}.", tuning(chosen, requirements)),
     ];
     if chosen.what == What::Tmd {
@@ -152,13 +146,9 @@ fn beside((formula, tmd): &(Formula, Candidate), best: f64, goal: Measure) -> St
         true if more > 5e-4 => format!(", {} more", percent(more)),
         true => String::new(),
     };
-    format!(
-        "  {} (k2 = {}, c2 = {}) gives {}{beside}.",
-        formula.name,
-        sized(formula.k2, "N/m"),
-        sized(formula.c2, "N·s/m"),
-        sized(tmd.goal, goal.unit()),
-    )
+    let Formula { name, k2, c2 } = *formula;
+    let (k2, c2, has) = (sized(k2, "N/m"), sized(c2, "N·s/m"), sized(tmd.goal, goal.unit()));
+    format!("  {name} (k2 = {k2}, c2 = {c2}) gives {has}{beside}.")
 }
 
 /// That nothing keeps the limits, and what would.
@@ -215,26 +205,16 @@ pub(super) fn findings(requirements: &Requirements, compared: &Comparison) -> Ve
 
 fn costs(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
     let goal = compared.goal;
+    let said = |of: &Candidate| sized(of.goal, goal.unit());
     let cost = |own: &Candidate, free: &Candidate| {
-        let more = own.goal / free.goal - 1.0;
+        let (more, name) = (own.goal / free.goal - 1.0, own.what.name());
+        let instead = format!("({} instead of {})", said(own), said(free));
         if more >= 1.0 {
-            format!(
-                "makes that of the {} {} times as large ({} instead of {})",
-                own.what.name(),
-                rounded(1.0 + more, 3),
-                sized(own.goal, goal.unit()),
-                sized(free.goal, goal.unit())
-            )
+            format!("makes that of the {name} {} times as large {instead}", rounded(1.0 + more, 3))
         } else if more > 1e-6 {
-            format!(
-                "costs the {} {} ({} instead of {})",
-                own.what.name(),
-                percent(more),
-                sized(own.goal, goal.unit()),
-                sized(free.goal, goal.unit())
-            )
+            format!("costs the {name} {} {instead}", percent(more))
         } else {
-            format!("costs the {} nothing", own.what.name())
+            format!("costs the {name} nothing")
         }
     };
     let line = |of: &super::comparison::Cost| {
@@ -242,18 +222,15 @@ fn costs(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
         if compared.tmd.feasible {
             words.push(cost(&compared.tmd, &of.tmd));
         } else if of.tmd.feasible {
-            words.push(format!(
-                "is one that no TMD of this mass keeps: without it {} is {}",
-                goal.name(),
-                sized(of.tmd.goal, goal.unit())
-            ));
+            let (name, has) = (goal.name(), said(&of.tmd));
+            words.push(format!("is one that no TMD of this mass keeps: without it {name} is {has}"));
         }
         match (&compared.ssvi, &of.ssvi) {
             (Some(own), Some(free)) if own.feasible => words.push(cost(own, free)),
             (Some(own), None) if own.feasible => words.push("holds no SSVI NES back".to_owned()),
             _ => {}
         }
-        let name = limit(requirements, of.wish);
+        let name = limit(requirements, of.constraint);
         (!words.is_empty()).then(|| format!("The limit {name} {}.", words.join("; ")))
     };
     compared.costs.iter().filter_map(line).collect()
@@ -269,10 +246,6 @@ fn from_rest(requirements: &Requirements, compared: &Comparison) -> Option<Strin
             .then(|| format!("{} {}", measure.name().replace('_', " "), sized(value, measure.unit())))
     });
     let above: Vec<String> = above.collect();
-    (!above.is_empty()).then(|| {
-        format!(
-            "Limits hold for the steady motion; just after the force sets in, from rest: {}.",
-            above.join(", ")
-        )
-    })
+    let words = "Limits hold for the steady motion; just after the force sets in, from rest";
+    (!above.is_empty()).then(|| format!("{words}: {}.", above.join(", ")))
 }

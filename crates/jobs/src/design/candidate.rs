@@ -5,7 +5,6 @@ use retune_optim::{Limit, Limits, Need, Unusable};
 use retune_study::Study;
 use serde::Serialize;
 
-/// What a candidate is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum What {
     /// The structure alone.
@@ -20,7 +19,6 @@ pub enum What {
 }
 
 impl What {
-    /// Its name.
     pub const fn name(self) -> &'static str {
         match self {
             Self::None => "no damper",
@@ -33,13 +31,11 @@ impl What {
 /// A candidate: its scene, and its largest values over the band.
 #[derive(Clone, Debug)]
 pub struct Candidate {
-    /// What it is.
     pub what: What,
     /// The study by which it is measured, with it in its scene.
     pub study: Study,
     /// The value of the goal, in its unit.
     pub goal: f64,
-    /// Whether it keeps the limits.
     pub feasible: bool,
     /// Limits that it reaches to 1 %, or breaks, with what it has.
     pub binding: Vec<(Limit, f64)>,
@@ -51,9 +47,6 @@ pub struct Candidate {
 
 impl Candidate {
     /// Measures the scene of a study, with its damper or without.
-    ///
-    /// # Errors
-    /// It cannot be run.
     pub fn new(what: What, study: &Study) -> Result<Self, Unusable> {
         let settings = study.solver.settings();
         let needs =
@@ -88,7 +81,6 @@ impl Candidate {
         self.steady.get(measure).value
     }
 
-    /// Its damper.
     pub fn damper(&self) -> Option<Damper> {
         self.study.scene.damper
     }

@@ -1,11 +1,10 @@
 //! The comparison: no damper, the best TMD, an SSVI NES, what each limit costs, and how sure the recommended one is.
 
 use super::candidate::{Candidate, What};
-use super::question::question;
-use super::requirements::{Dampers, Requirements, Wish};
-use super::words::{parameters, sized};
+use super::requirements::{Constraint, Dampers, Requirements};
+use super::words::{parameters, question, sized};
 use super::{Formula, ssvi, tmd};
-use crate::certify::{Certificate, Short, Verdict, judge};
+use crate::certify::{Certificate, Verdict, judge};
 use crate::{Error, Observer};
 use retune_model::{Design, Measure, Parameter, Scene};
 use retune_optim::{Limit, Need};
@@ -48,16 +47,16 @@ pub struct Comparison {
     /// Mass of the lightest TMD that would keep the limits, kg, where that of the mass that is given does not.
     pub lightest: Option<f64>,
     /// How sure the one to build is.
-    pub certificate: Option<Short>,
+    pub certificate: Option<Certificate>,
     /// How sure the SSVI NES is, where it would be better than the TMD.
-    pub ssvi_certificate: Option<Short>,
+    pub ssvi_certificate: Option<Certificate>,
 }
 
 /// What a limit costs.
 #[derive(Debug)]
 pub struct Cost {
     /// The limit.
-    pub wish: Wish,
+    pub constraint: Constraint,
     /// The best TMD without it.
     pub tmd: Candidate,
     /// The best SSVI NES without it, where the limit holds that under all limits back.
@@ -76,9 +75,6 @@ impl Comparison {
     }
 
     /// Refuses a comparison of which no damper keeps the limits.
-    ///
-    /// # Errors
-    /// [`Error::Infeasible`].
     pub fn check_limits(&self) -> Result<(), Error> {
         match self.choice {
             Some(_) => Ok(()),
@@ -95,7 +91,6 @@ impl Comparison {
     }
 }
 
-/// A study with a design in its scene.
 fn with(study: &Study, value: impl Fn(Parameter) -> f64) -> Result<Study, Error> {
     let no_damper = || Error::Rule { name: study.name().to_owned(), rule: Rule::NoDamper };
     let design = Design::new(value).map_err(|(_, source)| Error::from(source))?;
@@ -113,7 +108,6 @@ fn tmd_of(study: &Study, [k2, c2]: [f64; 2]) -> Result<Candidate, Error> {
     Ok(Candidate::new(What::Tmd, &study)?)
 }
 
-/// The TMD of a formula.
 fn by(requirements: &Requirements, study: &Study, formula: Formula) -> Result<(Formula, Candidate), Error> {
     let mut tmd = tmd_of(study, [formula.k2, formula.c2])?;
     tmd.feasible &= requirements.k2_max.is_none_or(|most| formula.k2 <= most);
@@ -124,7 +118,7 @@ fn by(requirements: &Requirements, study: &Study, formula: Formula) -> Result<(F
 /// strikes nothing is a TMD. Each is measured when it is asked for, which takes most of the time where its motions are irregular.
 fn striking<'a>(
     study: &'a Study,
-    found: &'a ssvi::Found,
+    found: &'a ssvi::Ends,
 ) -> impl Iterator<Item = Result<(f64, Candidate), Error>> + 'a {
     let measured = |(value, end): &'a (f64, Vec<f64>)| -> Result<Option<(f64, Candidate)>, Error> {
         let place = |parameter: Parameter| Parameter::PAPER.iter().position(|own| *own == parameter);
@@ -137,7 +131,7 @@ fn striking<'a>(
 
 /// How much a damper may be trusted: 0 of the best verdict.
 fn doubt(certificate: &Certificate) -> u8 {
-    match certificate.verdict {
+    match certificate.judged.verdict {
         Some(Verdict::Robust) => 0,
         Some(Verdict::Edge) => 1,
         Some(Verdict::FromRest) => 2,
@@ -169,9 +163,6 @@ fn trusted(
 }
 
 /// Makes the whole comparison; what is known is told at once.
-///
-/// # Errors
-/// As of the searches, the runs and the journal.
 pub(super) fn compare(
     requirements: &Requirements,
     [tmd_study, ssvi_study]: [&Study; 2],
@@ -189,12 +180,8 @@ pub(super) fn compare(
     let formulas =
         formulas.into_iter().map(|formula| by(requirements, tmd_study, formula)).collect::<Result<_, _>>()?;
     let kept = if tmd.feasible { "" } else { " (breaks a limit)" };
-    watch.result(&format!(
-        "\nTMD, exact: {} {}{kept}, {}",
-        goal.name(),
-        sized(tmd.goal, goal.unit()),
-        parameters(&tmd)
-    ))?;
+    let (name, has) = (goal.name(), sized(tmd.goal, goal.unit()));
+    watch.result(&format!("\nTMD, exact: {name} {has}{kept}, {}", parameters(&tmd)))?;
     let (mut ssvi, mut tried, mut judged) = (None, None, None);
     if requirements.dampers != Dampers::Tmd {
         watch.result("SSVI NES, from known designs: some seconds (Ctrl-C leaves what stands above)")?;
@@ -219,10 +206,9 @@ pub(super) fn compare(
     };
     let lightest = if tmd.feasible { None } else { lightest(requirements)? };
     let chosen = dampers.into_iter().flatten().find(|damper| Some(damper.what) == choice);
-    let ssvi_certificate = judged.as_ref().map(Certificate::short);
     let certificate = match choice {
-        Some(What::Ssvi) => ssvi_certificate.clone(),
-        _ => chosen.map(|damper| judge(&damper.study)).transpose()?.map(|certificate| certificate.short()),
+        Some(What::Ssvi) => judged.clone(),
+        _ => chosen.map(|damper| judge(&damper.study)).transpose()?,
     };
     Ok(Comparison {
         goal,
@@ -236,7 +222,7 @@ pub(super) fn compare(
         detuned,
         lightest,
         certificate,
-        ssvi_certificate,
+        ssvi_certificate: judged,
     })
 }
 
@@ -266,28 +252,28 @@ fn costs(
     journal: &Journal,
     watch: &dyn Observer,
 ) -> Result<Vec<Cost>, Error> {
-    let cost = |wish: Wish| {
-        let free = requirements.without(wish);
+    let cost = |constraint: Constraint| {
+        let free = requirements.without(constraint);
         let study = free.tmd()?;
         let formulas = Formula::all(&free, &study.scene.primary);
         let free_tmd = tmd_of(&study, tmd::best(&study, &formulas)?)?;
-        let binds = match wish {
-            Wish::Of(limit) => ssvi.binding.iter().any(|(other, _)| *other == limit),
-            Wish::K2 => ssvi.k2() > 0.99 * requirements.allowed(wish),
+        let binds = match constraint {
+            Constraint::Of(limit) => ssvi.binding.iter().any(|(other, _)| *other == limit),
+            Constraint::K2 => ssvi.k2() > 0.99 * requirements.allowed(constraint),
         };
         let free_ssvi = if ssvi.what == What::Ssvi && binds {
             let study = free.ssvi()?;
             let start = Parameter::PAPER
                 .map(|parameter| ssvi.damper().map_or(f64::NAN, |damper| parameter.get(&damper)));
-            let stage = format!("ssvi without {}", wish.name());
+            let stage = format!("ssvi without {}", constraint.name());
             let found = ssvi::best(&study, tmd, &[start.to_vec()], (journal, &stage), watch)?;
             striking(&study, &found).next().transpose()?.map(|(_, candidate)| candidate)
         } else {
             None
         };
-        Ok(Cost { wish, tmd: free_tmd, ssvi: free_ssvi })
+        Ok(Cost { constraint, tmd: free_tmd, ssvi: free_ssvi })
     };
-    requirements.wishes().into_iter().map(cost).collect()
+    requirements.constraints().into_iter().map(cost).collect()
 }
 
 /// The goal of a damper with k1 off by minus and plus a share.
@@ -349,7 +335,7 @@ impl Serialize for Comparison {
             .iter()
             .map(|cost| {
                 (
-                    cost.wish.name().to_owned(),
+                    cost.constraint.name().to_owned(),
                     json!({ "TMD_without": cost.tmd, "SSVI_NES_without": cost.ssvi }),
                 )
             })
@@ -357,8 +343,8 @@ impl Serialize for Comparison {
         json!({
             "goal": self.goal,
             "build": self.choice,
-            "certificate": self.certificate,
-            "SSVI_NES_certificate": self.ssvi_certificate,
+            "certificate": self.certificate.as_ref().map(Certificate::short),
+            "SSVI_NES_certificate": self.ssvi_certificate.as_ref().map(Certificate::short),
             "candidates": self.all().collect::<Vec<_>>(),
             "formulas": self.formulas.iter().map(by).collect::<Vec<_>>(),
             "limits": costs,

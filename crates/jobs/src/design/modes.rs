@@ -1,6 +1,6 @@
 //! A table of modes, of which one becomes the structure of a design.
 
-use super::typed::Wishes;
+use super::typed::Specification;
 use crate::Error;
 use retune_model::{Mode, NonNegative, Positive, left_out, most_felt};
 use retune_study::{frequency, rounded};
@@ -15,20 +15,15 @@ const COLUMNS: [&str; 4] = ["f", "zeta", "M", "phi"];
 ///
 /// # Errors
 /// The table cannot be read, or has no such mode.
-pub fn structure(path: &Path, which: Option<usize>) -> Result<(Wishes, String), Error> {
+pub fn structure(path: &Path, which: Option<usize>) -> Result<(Specification, String), Error> {
     let file = path.display().to_string();
     let refused = |problem: String| Error::Requirement { place: file.clone(), problem };
-    let text = retune_store::plain::text(path)
-        .map_err(|source| retune_store::Error::Input { path: path.to_owned(), source })?;
-    let modes = modes(&text).map_err(&refused)?;
+    let modes = modes(&retune_store::plain::text(path)?).map_err(&refused)?;
     let given = which.map_or_else(|| most_felt(&modes), |number| number.checked_sub(1));
-    let chosen = given.filter(|i| *i < modes.len()).ok_or_else(|| Error::Requirement {
+    let (count, number) = (modes.len(), which.unwrap_or(0));
+    let chosen = given.filter(|i| *i < count).ok_or_else(|| Error::Requirement {
         place: "--mode".to_owned(),
-        problem: format!(
-            "{} is not allowed here: give a number from 1 to {}",
-            which.unwrap_or(0),
-            modes.len()
-        ),
+        problem: format!("{number} is not allowed here: give a number from 1 to {count}"),
     })?;
     let mode = modes[chosen];
     let primary = mode.primary().map_err(|error| {
@@ -36,19 +31,15 @@ pub fn structure(path: &Path, which: Option<usize>) -> Result<(Wishes, String), 
     })?;
     let [m1, k1, c1] = [primary.mass.get(), primary.stiffness.get(), primary.damping.get()];
     let typed = |value: f64| Some(value.to_string().into());
-    let wishes = Wishes { m1: typed(m1), k1: typed(k1), c1: typed(c1), ..Wishes::default() };
+    let specification =
+        Specification { m1: typed(m1), k1: typed(k1), c1: typed(c1), ..Specification::default() };
+    let ([m1, k1, c1], number) = ([m1, k1, c1].map(|value| rounded(value, 6)), chosen + 1);
+    let (own, others) = (frequency(mode.omega.get()), rounded(100.0 * left_out(&modes, chosen), 2));
     let words = format!(
-        "mode {} of {}, {}, is at the damper a structure of m1 = {} kg, k1 = {} N/m and c1 = {} N·s/m; at its frequency the modes that \
-         are left out add {} % to its displacement by a force there",
-        chosen + 1,
-        modes.len(),
-        frequency(mode.omega.get()),
-        rounded(m1, 6),
-        rounded(k1, 6),
-        rounded(c1, 6),
-        rounded(100.0 * left_out(&modes, chosen), 2)
+        "mode {number} of {count}, {own}, is at the damper a structure of m1 = {m1} kg, k1 = {k1} N/m and c1 = {c1} N·s/m; at its \
+         frequency the modes that are left out add {others} % to its displacement by a force there"
     );
-    Ok((wishes.within(&file), words))
+    Ok((specification.within(&file), words))
 }
 
 /// The modes of a table, CSV with a header.

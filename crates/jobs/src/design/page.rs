@@ -3,13 +3,21 @@
 use super::answer::{build, findings, rows};
 use super::candidate::{Candidate, What};
 use super::comparison::Comparison;
-use super::question::asked;
-use super::requirements::Requirements;
-use super::words::{parameters, sized, tuning};
-use super::{curves, drawing};
+use super::requirements::{Constraint, Requirements};
+use super::words::{asked, parameters, radians, sized, tuning};
+use crate::pages::made_by;
+use crate::tune::band::at;
+use rayon::prelude::*;
+use retune_model::{Bare, Coupled, Measure, PerMeasure, unit};
+use retune_optim::Limit;
+use retune_report::colour::{BLACK, BLUE, GREEN, GREY, VERMILION};
 use retune_report::document::{Block, Document};
+use retune_report::{
+    Axis, Chart, Dash, Drawing, Key, Layer, Mark, Scale, Shape, Sheet, Stand, Stroke, Width, drawing,
+};
+use retune_solver::{Also, Ask, extremes};
+use retune_study::rounded;
 
-/// The page.
 pub(super) fn page(requirements: &Requirements, compared: &Comparison) -> Document {
     let names: Vec<&str> = compared.all().map(|of| of.what.name()).collect();
     let head: Vec<String> =
@@ -27,11 +35,14 @@ pub(super) fn page(requirements: &Requirements, compared: &Comparison) -> Docume
         .costs
         .iter()
         .map(|cost| {
-            let allowed = sized(requirements.allowed(cost.wish), cost.wish.unit());
+            let allowed = sized(requirements.allowed(cost.constraint), cost.constraint.unit());
             let value =
                 |of: Option<&Candidate>| of.map_or("-".to_owned(), |of| sized(of.goal, compared.goal.unit()));
             let own = [Some(&compared.tmd), Some(&cost.tmd), compared.ssvi.as_ref(), cost.ssvi.as_ref()];
-            [format!("{} at most {allowed}", cost.wish.name())].into_iter().chain(own.map(value)).collect()
+            [format!("{} at most {allowed}", cost.constraint.name())]
+                .into_iter()
+                .chain(own.map(value))
+                .collect()
         })
         .collect();
     let mut compare = vec![
@@ -73,7 +84,7 @@ pub(super) fn page(requirements: &Requirements, compared: &Comparison) -> Docume
                 "Over the band",
                 vec![Block::figure(
                     "band.svg",
-                    curves::curves(requirements, compared),
+                    curves(requirements, compared),
                     "Each quantity against frequency, once the motion is steady. Grey: what a limit forbids.",
                 )],
             ),
@@ -82,7 +93,7 @@ pub(super) fn page(requirements: &Requirements, compared: &Comparison) -> Docume
                 "The damper to scale",
                 vec![Block::figure(
                     "damper.svg",
-                    drawing::drawing(chosen),
+                    to_scale(chosen),
                     format!("{kind}: positions relative to the structure, in mm."),
                 )],
             ),
@@ -90,4 +101,164 @@ pub(super) fn page(requirements: &Requirements, compared: &Comparison) -> Docume
             ("files", "Files", vec![Block::files(&["comparison.csv", "design.json", "answer.txt"])]),
         ],
     }
+}
+
+/// Frequencies of a curve in closed form, and of one of runs.
+const FINE: usize = 401;
+const RUNS: usize = 101;
+
+const fn line(what: What) -> Stroke {
+    match what {
+        What::None => Stroke::new(BLACK, 0.9, Dash::Short),
+        What::Tmd => Stroke::solid(BLUE),
+        What::Ssvi => Stroke::new(VERMILION, 1.1, Dash::Long),
+    }
+}
+
+/// A frequency, rad/s, and the quantities there, in SI units.
+type Curve = Vec<(f64, PerMeasure<f64>)>;
+
+/// Every quantity of a candidate at frequencies of the band (rad/s), once its motion is steady; NaN where a run fails.
+fn curve(of: &Candidate, [from, to]: [f64; 2]) -> Curve {
+    let study = &of.study;
+    let closed = study.goal().objective.is_steady();
+    let points = if closed { FINE } else { RUNS };
+    let value = |i: usize| {
+        let omega = from + (to - from) * i as f64 / (points - 1) as f64;
+        let none = PerMeasure::all(f64::NAN);
+        let Some(scene) = at(omega, study.scene) else { return (omega, none) };
+        if closed {
+            let bare = Bare::new(&scene.primary, &scene.forcing);
+            let steady = scene.damper.map_or_else(
+                || bare.steady(omega),
+                |damper| Coupled::new(&scene.primary, &scene.forcing, &damper).steady(omega),
+            );
+            return (omega, PerMeasure(Measure::ALL.map(|measure| steady.largest(&bare, omega, measure))));
+        }
+        let window = study.window.window();
+        let also = Some(Also { measures: PerMeasure::EVERY, from: window.from });
+        let run = extremes(&scene, window, &study.solver.settings(), Ask { also, ..Ask::default() });
+        (omega, run.map_or(none, |run| run.reached))
+    };
+    (0..points).into_par_iter().map(value).collect()
+}
+
+fn curves(requirements: &Requirements, compared: &Comparison) -> Drawing {
+    let size = radians(requirements.frequencies);
+    let curves: Vec<(What, Curve)> =
+        compared.all().map(|of| (of.what, curve(of, requirements.band))).collect();
+    let ends = requirements.band.map(|end| end / size);
+    let strikes = compared.dampers().any(Candidate::strikes);
+    let shown = Measure::ALL.into_iter().filter(|measure| !measure.is_of_walls() || strikes);
+    let chart = |measure: Measure| {
+        let all: Vec<f64> = curves
+            .iter()
+            .flat_map(|(_, points)| points.iter().map(|(_, values)| values.get(measure)))
+            .collect();
+        let largest = all.iter().copied().filter(|value| value.is_finite()).fold(0.0, f64::max);
+        let (name, number) = unit::readable(largest, measure.unit());
+        let scale = if number == 0.0 { 1.0 } else { number / largest };
+        let scaled: Vec<f64> = all.iter().map(|value| scale * value).filter(|value| *value > 0.0).collect();
+        let label = format!("{}, {name}", measure.name().replace('_', " "));
+        // What a wall feels is zero where nothing is struck.
+        let of_walls = measure.is_of_walls();
+        let y =
+            if of_walls { Axis::from_zero(label, scaled) } else { Axis::around(label, Scale::Log, scaled) };
+        let allowed = requirements.allowed(Constraint::Of(Limit::Of(measure)));
+        let mut layers = Vec::new();
+        if allowed.is_finite() {
+            layers.push(Layer::Band {
+                x: (f64::NEG_INFINITY, f64::INFINITY),
+                y: (scale * allowed, f64::INFINITY),
+                colour: GREY,
+                opacity: 0.25,
+            });
+        }
+        for (what, points) in &curves {
+            let points = points.iter().map(|(omega, values)| (omega / size, scale * values.get(measure)));
+            layers.push(Layer::line(points.filter(|(_, value)| of_walls || *value > 0.0), line(*what)));
+        }
+        Chart::of(
+            Axis::linear(format!("frequency, {}", requirements.frequencies), (ends[0], ends[1])),
+            y,
+            layers,
+            130.0,
+        )
+    };
+    let charts: Vec<Chart> = shown.map(chart).collect();
+    let legend = compared.all().map(|of| (Key::Line(line(of.what)), of.what.name().to_owned())).collect();
+    let sheet = Sheet::of("All candidates over the band", charts);
+    let description =
+        "Each quantity against the frequency of the forcing, for the structure alone and with each damper."
+            .to_owned();
+    drawing(&Sheet {
+        description,
+        width: Width::Page,
+        columns: 2,
+        legend,
+        caption: vec![made_by(None)],
+        ..sheet
+    })
+}
+
+const MM: f64 = 1e3;
+
+fn to_scale(of: &Candidate) -> Drawing {
+    let stroke = MM * of.value(Measure::Stroke);
+    let begin = MM * of.from_rest.get(Measure::Stroke).value;
+    let motion = MM * of.value(Measure::Displacement);
+    let walls = of
+        .damper()
+        .filter(|damper| damper.contact.is_some())
+        .map(|damper| [-MM * damper.rest_distance.get(), MM * damper.clearance.get()]);
+    // Relative to the damper at rest; a wall that is far out of reach is not drawn.
+    let reach = 1.3 * begin.max(stroke).max(motion).max(1e-9);
+    let near = |wall: f64| wall.abs() <= 1.6 * reach;
+    let ends = walls.map_or([-reach, reach], |[left, right]| {
+        [
+            if near(left) { 1.15 * left.min(-0.5 * reach) } else { -reach },
+            if near(right) { 1.15 * right.max(0.5 * reach) } else { reach },
+        ]
+    });
+    let ends = [ends[0].min(-reach), ends[1].max(reach)];
+    let far = f64::INFINITY;
+    let bar =
+        |half: f64, y: (f64, f64), colour, opacity| Layer::Band { x: (-half, half), y, colour, opacity };
+    let text = |at: (f64, f64), text: String| Layer::Text { at, text, stand: Stand::Over };
+    let mut layers = Vec::new();
+    if let Some([left, right]) = walls {
+        for (wall, x) in [(left, (-far, left)), (right, (right, far))] {
+            if near(wall) {
+                layers.push(Layer::Band { x, y: (0.0, 3.0), colour: GREY, opacity: 0.5 });
+                layers.push(Layer::Upright { x: wall, stroke: Stroke::solid(BLACK) });
+            }
+        }
+        let name = |wall: f64, symbol: &str| {
+            format!(
+                "{symbol} = {} mm{}",
+                rounded(wall.abs(), 4),
+                if near(wall) { "" } else { ", beyond this figure" }
+            )
+        };
+        layers.push(text(
+            (0.5 * (ends[0] + ends[1]), 0.35),
+            format!("{}; {}", name(left, "D"), name(right, "C")),
+        ));
+    }
+    layers.push(bar(begin, (2.05, 2.15), BLUE, 0.35));
+    layers.push(bar(stroke, (2.0, 2.2), BLUE, 0.9));
+    layers.push(text(
+        (0.0, 2.55),
+        format!("± {} mm, from rest on ± {} mm", rounded(stroke, 4), rounded(begin, 4)),
+    ));
+    layers.push(bar(motion, (1.0, 1.2), GREEN, 0.9));
+    layers.push(text((0.0, 1.55), format!("± {} mm", rounded(motion, 4))));
+    layers.push(Layer::Upright { x: 0.0, stroke: Stroke::new(BLACK, 0.7, Dash::Dots) });
+    layers.push(Layer::Marks { points: vec![(0.0, 2.1)], mark: Mark::new(Shape::Square, BLACK, 5.0) });
+    let y = Axis::of_names((0.0, 3.0), vec![(2.1, "damper".to_owned()), (1.1, "structure".to_owned())]);
+    let chart = Chart::of(Axis::linear("distance from rest, mm", (ends[0], ends[1])), y, layers, 150.0);
+    let sheet = Sheet::of("The damper to scale", vec![chart]);
+    let description =
+        format!("Stroke ± {} mm, the structure moves by ± {} mm.", rounded(stroke, 4), rounded(motion, 4));
+    drawing(&Sheet { description, width: Width::Page, ..sheet })
 }

@@ -1,7 +1,8 @@
 //! From requirements as given to requirements in SI units: what is missing, contradicts itself or cannot be is refused with what to give.
 
-use super::requirements::{Dampers, Driving, Requirements, Wall};
-use super::typed::{Typed, Wishes};
+use super::requirements::{Dampers, Requirements, Wall};
+use super::typed::{Specification, Typed};
+use super::words::radians;
 use crate::Error;
 use retune_model::{Measure, Parameter, Positive, Unit, unit};
 use retune_optim::{Limit, Limits};
@@ -13,33 +14,30 @@ const BAND: f64 = 0.1;
 /// A share without `%` from here on is taken for a slip: 0.5 % is meant, not half.
 const SLIP: f64 = 0.2;
 
-impl Wishes {
+impl Specification {
     /// The requirements in SI units.
-    ///
-    /// # Errors
-    /// The first that is missing or cannot be, by its name, with what to give.
     pub fn requirements(&self) -> Result<Requirements, Error> {
         checked(self)
     }
 }
 
-fn checked(wishes: &Wishes) -> Result<Requirements, Error> {
-    let [m1, k1] = structure(wishes)?;
+fn checked(specification: &Specification) -> Result<Requirements, Error> {
+    let [m1, k1] = structure(specification)?;
     let natural = (k1 / m1).sqrt();
-    let c1 = damping(wishes, 2.0 * m1 * natural)?;
-    let source = driving(wishes)?;
-    let (band, hertz) = band(wishes, natural)?;
-    let mass = mass(wishes, m1)?;
-    let goal = goal(wishes)?;
-    let (limits, k2_max) = limits(wishes)?;
-    let k1_error = wishes.k1_error.as_ref().map(|typed| share(typed, "k1_error", 1.0)).transpose()?;
-    let dampers = wishes.damper.as_ref().map_or(Ok(Dampers::Both), |typed| {
+    let c1 = damping(specification, 2.0 * m1 * natural)?;
+    let source = driving(specification)?;
+    let (band, hertz) = band(specification, natural)?;
+    let mass = mass(specification, m1)?;
+    let goal = goal(specification)?;
+    let (limits, k2_max) = limits(specification)?;
+    let k1_error = specification.k1_error.as_ref().map(|typed| share(typed, "k1_error", 1.0)).transpose()?;
+    let dampers = specification.damper.as_ref().map_or(Ok(Dampers::Both), |typed| {
         let known = Dampers::ALL.into_iter().find(|dampers| dampers.name() == typed.text);
         known.ok_or_else(|| {
             typed.refused("damper", format!("\"{}\" is none: give tmd, ssvi or both", typed.text))
         })
     })?;
-    let wall = wishes.wall.as_ref().map(wall).transpose()?;
+    let wall = specification.wall.as_ref().map(wall).transpose()?;
     Ok(Requirements {
         m1,
         k1,
@@ -57,7 +55,6 @@ fn checked(wishes: &Wishes) -> Result<Requirements, Error> {
     })
 }
 
-/// The error that something is missing.
 fn missing(option: &str, problem: &str) -> Error {
     Error::Requirement { place: option.to_owned(), problem: format!("missing: {problem}") }
 }
@@ -91,18 +88,20 @@ fn share(typed: &Typed, field: &str, most: f64) -> Result<f64, Error> {
 }
 
 /// `[m1, k1]`, kg and N/m.
-fn structure(wishes: &Wishes) -> Result<[f64; 2], Error> {
-    let [m1, k1, f1] =
-        [(&wishes.m1, Parameter::M1), (&wishes.k1, Parameter::K1), (&wishes.f1, Parameter::Omega)].map(
-            |(typed, parameter)| {
-                let name = if parameter == Parameter::Omega { "f1" } else { parameter.symbol() };
-                typed.as_ref().map(|typed| -> Result<f64, Error> {
-                    let value = positive(typed, name, parameter.units())?;
-                    // A bare number is a frequency in Hz: nobody names a natural frequency f1 in rad/s.
-                    Ok(if name == "f1" && is_bare(&typed.text) { TAU * value } else { value })
-                })
-            },
-        );
+fn structure(specification: &Specification) -> Result<[f64; 2], Error> {
+    let [m1, k1, f1] = [
+        (&specification.m1, Parameter::M1),
+        (&specification.k1, Parameter::K1),
+        (&specification.f1, Parameter::Omega),
+    ]
+    .map(|(typed, parameter)| {
+        let name = if parameter == Parameter::Omega { "f1" } else { parameter.symbol() };
+        typed.as_ref().map(|typed| -> Result<f64, Error> {
+            let value = positive(typed, name, parameter.units())?;
+            // A bare number is a frequency in Hz: nobody names a natural frequency f1 in rad/s.
+            Ok(if name == "f1" && is_bare(&typed.text) { TAU * value } else { value })
+        })
+    });
     match (m1.transpose()?, k1.transpose()?, f1.transpose()?) {
         (Some(m1), Some(k1), None) => Ok([m1, k1]),
         (Some(m1), None, Some(omega)) => Ok([m1, m1 * omega * omega]),
@@ -111,7 +110,10 @@ fn structure(wishes: &Wishes) -> Result<[f64; 2], Error> {
             let natural = rounded((k1 / m1).sqrt() / TAU, 4);
             let problem =
                 format!("m1 and k1 are given too, which make it {natural} Hz: leave one of the three out");
-            Err(wishes.f1.as_ref().map_or_else(|| missing("--f1", ""), |typed| typed.refused("f1", problem)))
+            Err(specification
+                .f1
+                .as_ref()
+                .map_or_else(|| missing("--f1", ""), |typed| typed.refused("f1", problem)))
         }
         (None, _, _) => Err(missing("--m1", "the mass of the structure, for instance --m1 40t")),
         (Some(_), None, None) => Err(missing(
@@ -126,8 +128,8 @@ fn is_bare(text: &str) -> bool {
 }
 
 /// c1, N·s/m; `critical` is twice the mass times the natural frequency.
-fn damping(wishes: &Wishes, critical: f64) -> Result<f64, Error> {
-    let c1 = match (&wishes.c1, &wishes.zeta) {
+fn damping(specification: &Specification, critical: f64) -> Result<f64, Error> {
+    let c1 = match (&specification.c1, &specification.zeta) {
         (Some(typed), None) => {
             let c1 = typed.number("c1", Parameter::C1.units())?;
             if !(c1 >= 0.0 && c1.is_finite()) {
@@ -164,29 +166,21 @@ fn damping(wishes: &Wishes, critical: f64) -> Result<f64, Error> {
 }
 
 /// What moves the structure.
-fn driving(wishes: &Wishes) -> Result<Driving, Error> {
+fn driving(specification: &Specification) -> Result<(Parameter, f64), Error> {
     let all = [
-        ("force", &wishes.force, Parameter::P.units()),
-        ("imbalance", &wishes.imbalance, Parameter::Imbalance.units()),
-        ("base", &wishes.base, Parameter::Base.units()),
-        ("base_acceleration", &wishes.base_acceleration, Parameter::BaseAcceleration.units()),
+        ("force", &specification.force, Parameter::P),
+        ("imbalance", &specification.imbalance, Parameter::Imbalance),
+        ("base", &specification.base, Parameter::Base),
+        ("base_acceleration", &specification.base_acceleration, Parameter::BaseAcceleration),
     ];
     let given: Vec<_> =
-        all.iter().filter_map(|(name, typed, units)| Some((*name, typed.as_ref()?, *units))).collect();
+        all.iter().filter_map(|(name, typed, of)| Some((*name, typed.as_ref()?, *of))).collect();
     match given.as_slice() {
         [] => Err(missing(
             "--force",
             "what moves the structure: --force 280N, --imbalance 0.02kg·m, --base 1mm or --base-acceleration 0.1g",
         )),
-        [(name, typed, units)] => {
-            let value = positive(typed, name, units)?;
-            Ok(match *name {
-                "force" => Driving::Force(value),
-                "imbalance" => Driving::Imbalance(value),
-                "base" => Driving::Base(value),
-                _ => Driving::BaseAcceleration(value),
-            })
-        }
+        [(name, typed, of)] => Ok((*of, positive(typed, name, of.units())?)),
         [(first, ..), (name, typed, _), ..] => {
             Err(typed
                 .refused(name, format!("{} is given too: leave one of them out", first.replace('_', "-"))))
@@ -195,13 +189,13 @@ fn driving(wishes: &Wishes) -> Result<Driving, Error> {
 }
 
 /// The band, rad/s, and the unit in which frequencies are told.
-fn band(wishes: &Wishes, natural: f64) -> Result<([f64; 2], &'static str), Error> {
+fn band(specification: &Specification, natural: f64) -> Result<([f64; 2], &'static str), Error> {
     let told = |text: &str| {
         let unit = unit::FREQUENCY.iter().rev().find(|(name, _)| text.contains(name));
         unit.map(|(name, _)| *name)
     };
-    let by_f1 = wishes.f1.as_ref().map(|typed| told(&typed.text).unwrap_or("Hz"));
-    let Some(typed) = &wishes.band else {
+    let by_f1 = specification.f1.as_ref().map(|typed| told(&typed.text).unwrap_or("Hz"));
+    let Some(typed) = &specification.band else {
         return Ok(([(1.0 - BAND) * natural, (1.0 + BAND) * natural], by_f1.unwrap_or("Hz")));
     };
     let text = typed.text.replace("+-", "±").replace("+/-", "±");
@@ -237,8 +231,7 @@ fn band(wishes: &Wishes, natural: f64) -> Result<([f64; 2], &'static str), Error
     if from > 0.0 && from < to && to.is_finite() {
         return Ok((ends, unit));
     }
-    let size = unit::FREQUENCY.iter().find(|(name, _)| *name == unit).map_or(1.0, |(_, size)| *size);
-    let [low, high] = [from.min(to), from.max(to)].map(|end| rounded(end / size, 6));
+    let [low, high] = [from.min(to), from.max(to)].map(|end| rounded(end / radians(unit), 6));
     let problem = if from > to && to > 0.0 {
         format!("the lower end comes first: write {low}..{high}{unit}")
     } else {
@@ -248,8 +241,8 @@ fn band(wishes: &Wishes, natural: f64) -> Result<([f64; 2], &'static str), Error
 }
 
 /// Mass of the damper, kg.
-fn mass(wishes: &Wishes, m1: f64) -> Result<f64, Error> {
-    let Some(typed) = &wishes.mass else {
+fn mass(specification: &Specification, m1: f64) -> Result<f64, Error> {
+    let Some(typed) = &specification.mass else {
         let words = "the mass of the damper, for instance --mass 2% (of the structure) or --mass 800kg";
         return Err(missing("--mass", words));
     };
@@ -275,8 +268,8 @@ fn measure(name: &str) -> Option<Measure> {
     Measure::ALL.into_iter().find(|measure| measure.name() == name)
 }
 
-fn goal(wishes: &Wishes) -> Result<Measure, Error> {
-    let Some(typed) = &wishes.goal else { return Ok(Measure::Energy) };
+fn goal(specification: &Specification) -> Result<Measure, Error> {
+    let Some(typed) = &specification.goal else { return Ok(Measure::Energy) };
     let known = measure(&typed.text).filter(|measure| !measure.is_of_damper());
     known.ok_or_else(|| {
         let all = Measure::OF_STRUCTURE.map(Measure::name).join(", ");
@@ -284,10 +277,9 @@ fn goal(wishes: &Wishes) -> Result<Measure, Error> {
     })
 }
 
-/// The limits, and the largest k2.
-fn limits(wishes: &Wishes) -> Result<(Limits, Option<f64>), Error> {
+fn limits(specification: &Specification) -> Result<(Limits, Option<f64>), Error> {
     let (mut limits, mut k2) = (Limits::default(), None);
-    for (name, typed) in wishes.all_limits()? {
+    for (name, typed) in specification.all_limits()? {
         let field = format!("limit {name}");
         let own = |limit: Limit| match limit {
             Limit::Of(measure) => measure.units(),

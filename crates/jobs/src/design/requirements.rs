@@ -4,11 +4,13 @@
 //! structure without a damper.
 
 use crate::Error;
-use retune_model::{Bare, Forcing, Measure, NonNegative, Positive, Primary, Source, Surfaces, den_hartog};
+use retune_model::{
+    Bare, Forcing, Measure, NonNegative, Parameter, Positive, Primary, Source, Surfaces, den_hartog,
+};
 use retune_optim::{Limit, Limits};
 use retune_study::Study;
 use retune_study::read::from_text;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 
@@ -21,9 +23,9 @@ pub struct Requirements {
     pub k1: f64,
     /// Its damping, N·s/m.
     pub c1: f64,
-    /// What moves it.
-    #[serde(flatten)]
-    pub source: Driving,
+    /// What moves it: a parameter of a forcing, and its amplitude in the SI unit.
+    #[serde(flatten, serialize_with = "as_field")]
+    pub source: (Parameter, f64),
     /// The angular frequencies of the forcing, rad/s.
     pub band: [f64; 2],
     /// The unit in which frequencies are told: Hz, rpm or rad/s.
@@ -44,21 +46,8 @@ pub struct Requirements {
     pub wall: Option<Wall>,
 }
 
-/// What moves the structure.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub enum Driving {
-    /// A force of this amplitude, N.
-    #[serde(rename = "P")]
-    Force(f64),
-    /// A rotating imbalance, kg·m.
-    #[serde(rename = "imbalance")]
-    Imbalance(f64),
-    /// A base that moves by this amplitude, m.
-    #[serde(rename = "base")]
-    Base(f64),
-    /// A base whose acceleration has this amplitude at every frequency, m/s².
-    #[serde(rename = "base_acceleration")]
-    BaseAcceleration(f64),
+fn as_field<S: Serializer>(source: &(Parameter, f64), serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map([(source.0.symbol(), source.1)])
 }
 
 /// The dampers that are compared.
@@ -100,14 +89,14 @@ pub struct Wall {
 
 /// A limit that is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wish {
+pub enum Constraint {
     /// On a quantity.
     Of(Limit),
     /// On the stiffness of the damper's spring.
     K2,
 }
 
-impl Wish {
+impl Constraint {
     /// Its name in tables.
     pub const fn name(self) -> &'static str {
         match self {
@@ -135,25 +124,25 @@ const LEAST_DAMPING: f64 = 0.01;
 
 impl Requirements {
     /// The limits that are asked for, in the order of the catalogue.
-    pub fn wishes(&self) -> Vec<Wish> {
-        self.limits.set().map(Wish::Of).chain(self.k2_max.map(|_| Wish::K2)).collect()
+    pub fn constraints(&self) -> Vec<Constraint> {
+        self.limits.set().map(Constraint::Of).chain(self.k2_max.map(|_| Constraint::K2)).collect()
     }
 
     /// The largest value that a limit allows, in its SI unit; NaN where there is no such limit.
-    pub fn allowed(&self, wish: Wish) -> f64 {
-        match wish {
-            Wish::Of(limit) => self.limits.get(limit).unwrap_or(f64::NAN),
-            Wish::K2 => self.k2_max.unwrap_or(f64::NAN),
+    pub fn allowed(&self, constraint: Constraint) -> f64 {
+        match constraint {
+            Constraint::Of(limit) => self.limits.get(limit).unwrap_or(f64::NAN),
+            Constraint::K2 => self.k2_max.unwrap_or(f64::NAN),
         }
     }
 
     /// The same without one limit.
     #[must_use]
-    pub fn without(&self, wish: Wish) -> Self {
+    pub fn without(&self, constraint: Constraint) -> Self {
         let mut free = self.clone();
-        match wish {
-            Wish::K2 => free.k2_max = None,
-            Wish::Of(limit) => {
+        match constraint {
+            Constraint::K2 => free.k2_max = None,
+            Constraint::Of(limit) => {
                 let kept = self.limits.set().filter(|other| *other != limit);
                 free.limits = kept.fold(Limits::default(), |limits, other| {
                     let most = self.limits.get(other).and_then(|most| Positive::new(most).ok());
@@ -181,11 +170,12 @@ impl Requirements {
 
     /// What moves it, at the frequency of the band that is nearest to its own.
     fn forcing(&self) -> Result<Forcing, Error> {
-        let source = match self.source {
-            Driving::Force(amplitude) => Source::Force(NonNegative::new(amplitude)?),
-            Driving::Imbalance(amplitude) => Source::Imbalance(NonNegative::new(amplitude)?),
-            Driving::Base(amplitude) => Source::Base(NonNegative::new(amplitude)?),
-            Driving::BaseAcceleration(amplitude) => Source::BaseAcceleration(NonNegative::new(amplitude)?),
+        let amplitude = NonNegative::new(self.source.1)?;
+        let source = match self.source.0 {
+            Parameter::Imbalance => Source::Imbalance(amplitude),
+            Parameter::Base => Source::Base(amplitude),
+            Parameter::BaseAcceleration => Source::BaseAcceleration(amplitude),
+            _ => Source::Force(amplitude),
         };
         let frequency = self.natural_frequency().clamp(self.band[0], self.band[1]);
         Ok(Forcing { source, frequency: NonNegative::new(frequency)?, start: None })
@@ -201,9 +191,6 @@ impl Requirements {
     }
 
     /// The study of the TMD: steady, in closed form, k2 and c2 free, without walls.
-    ///
-    /// # Errors
-    /// A number is beyond what a study may hold.
     pub fn tmd(&self) -> Result<Study, Error> {
         let ([k2, c2], _, size) = self.scales()?;
         let most = self.k2_max.unwrap_or(20.0 * k2);
@@ -233,9 +220,6 @@ impl Requirements {
     }
 
     /// The study of the SSVI NES: runs from rest, all four parameters free.
-    ///
-    /// # Errors
-    /// As [`Self::tmd`].
     pub fn ssvi(&self) -> Result<Study, Error> {
         let ([k2, c2], reach, size) = self.scales()?;
         let most = self.k2_max.unwrap_or(4.0 * k2);
@@ -277,9 +261,6 @@ impl Requirements {
 
     /// The walls of the damper. Where none are given they are the paper's, in proportion to the mass and to the square of the natural
     /// frequency: a contact then takes about the same share of a period.
-    ///
-    /// # Errors
-    /// There are none for its mass.
     pub fn contact(&self) -> Result<Surfaces, Error> {
         let scale = (self.natural_frequency() / PAPER).powi(2);
         let paper = Surfaces::for_mass(Positive::new(self.mass * scale)?)?;

@@ -37,10 +37,9 @@ const WORTH: f64 = 4.0;
 const DESCENTS: usize = 4;
 
 /// What a search for an SSVI NES comes to.
-pub(super) struct Found {
+pub(super) struct Ends {
     /// Its ends, `[k2, c2, D, C]` each with its value, the best first; none where nothing that was tried comes near the TMD.
     pub ends: Vec<(f64, Vec<f64>)>,
-    /// Designs that were evaluated.
     pub tried: usize,
 }
 
@@ -114,16 +113,13 @@ fn so_far(study: &Study, value: f64, x: &[f64]) -> String {
 }
 
 /// Searches from what is known; `beside` more starts, as the end of a search under other limits.
-///
-/// # Errors
-/// The study has nothing to tune, or the journal cannot be written.
 pub(super) fn best(
     study: &Study,
     tmd: &Candidate,
     beside: &[Vec<f64>],
     (journal, stage): (&Journal, &str),
     watch: &dyn Observer,
-) -> Result<Found, Error> {
+) -> Result<Ends, Error> {
     let search = study.search().map_err(Error::rule(study))?;
     debug_assert_eq!(search.variables, Parameter::PAPER);
     let objective = searched(study, &search, &search.variables);
@@ -171,5 +167,5 @@ pub(super) fn best(
         watch.result(&so_far(study, *value, x))?;
     }
     let tried = objective.counts().evaluations + loose.counts().evaluations;
-    Ok(Found { ends, tried: tried as usize })
+    Ok(Ends { ends, tried: tried as usize })
 }

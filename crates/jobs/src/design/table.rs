@@ -2,10 +2,9 @@
 
 use super::candidate::{Candidate, What};
 use super::comparison::Comparison;
-use crate::Error;
 use crate::again::{Row, Source};
-use crate::columns;
 use crate::resolved::Resolved;
+use crate::{Error, columns};
 use retune_model::{Measure, Parameter, Scene};
 use retune_report::cells;
 use retune_report::table::{Cell, Table};
@@ -48,16 +47,13 @@ pub(super) fn table(compared: &Comparison) -> Table {
     compared.all().for_each(|of| push("all".to_owned(), of));
     for cost in &compared.costs {
         for of in std::iter::once(&cost.tmd).chain(&cost.ssvi) {
-            push(format!("no {}", cost.wish.name()), of);
+            push(format!("no {}", cost.constraint.name()), of);
         }
     }
     table
 }
 
 /// The numbers of a row, computed again.
-///
-/// # Errors
-/// The input of the results cannot be read.
 pub(super) fn again(place: &Path, _name: &str) -> Result<Source, Error> {
     let studies = Resolved::read(place)?.studies()?;
     Ok(Source::new(move |row: Row| {

@@ -1,11 +1,11 @@
 //! The best TMD: the least of a closed form over spring and dashpot, by the descents of its peaks from the best of a small grid and from
 //! the formulas of textbooks. It takes milliseconds.
 
-use super::requirements::{Driving, Requirements};
+use super::requirements::Requirements;
 use crate::Error;
 use crate::tune::objective::searched;
 use rayon::prelude::*;
-use retune_model::{Measure, Primary, den_hartog, nishihara_asami, warburton};
+use retune_model::{Measure, Parameter, Primary, den_hartog, nishihara_asami, warburton};
 use retune_study::Study;
 
 /// Points of the grid along k2 and c2, from and to these multiples of Den Hartog's.
@@ -21,7 +21,6 @@ pub struct Formula {
     pub name: &'static str,
     /// Its spring (N/m) and dashpot (N·s/m).
     pub k2: f64,
-    /// As `k2`.
     pub c2: f64,
 }
 
@@ -31,13 +30,13 @@ impl Formula {
     /// without damping of the structure, and Den Hartog's. Warburton's where it is the displacement under an imbalance, or the
     /// acceleration under a constant force. Else Den Hartog's.
     pub fn all(requirements: &Requirements, primary: &Primary) -> Vec<Self> {
-        let imbalance = matches!(requirements.source, Driving::Imbalance(_));
-        let accelerated = matches!(requirements.source, Driving::BaseAcceleration(_));
+        let imbalance = requirements.source.0 == Parameter::Imbalance;
+        let accelerated = requirements.source.0 == Parameter::BaseAcceleration;
         let of_acceleration = requirements.goal == Measure::Acceleration;
         let squared = !accelerated && imbalance != of_acceleration;
         let exact = match requirements.goal {
             Measure::Displacement => !imbalance && !accelerated,
-            Measure::GroundForce => matches!(requirements.source, Driving::Force(_)),
+            Measure::GroundForce => requirements.source.0 == Parameter::P,
             _ => accelerated && of_acceleration,
         };
         let of = |name, formula: fn(&Primary, f64) -> [f64; 2]| {
@@ -54,9 +53,6 @@ impl Formula {
 }
 
 /// The best `[k2, c2]` of a TMD study under its limits: of designs that break some, the one that breaks them by the least.
-///
-/// # Errors
-/// The study has nothing to tune.
 pub(super) fn best(study: &Study, formulas: &[Formula]) -> Result<[f64; 2], Error> {
     let search = study.search().map_err(Error::rule(study))?;
     let objective = searched(study, &search, &search.variables);

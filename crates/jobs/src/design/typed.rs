@@ -41,7 +41,7 @@ impl TryFrom<Value> for Typed {
 /// What is asked of a design, as given. Nothing is checked yet: `requirements` does that.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Wishes {
+pub struct Specification {
     /// Mass of the structure.
     pub m1: Option<Typed>,
     /// Its stiffness; or `f1`.
@@ -88,18 +88,13 @@ pub struct Wishes {
     pub file: Option<String>,
 }
 
-impl Wishes {
+impl Specification {
     /// Reads a file of requirements.
-    ///
-    /// # Errors
-    /// It cannot be read, or holds a field that is not known.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let file = path.display().to_string();
-        let text = retune_store::plain::text(path)
-            .map_err(|source| retune_store::Error::Input { path: path.to_owned(), source })?;
-        let wishes: Self = serde_json::from_str(&text)
+        let specification: Self = serde_json::from_str(&retune_store::plain::text(path)?)
             .map_err(|error| Error::Requirement { place: file.clone(), problem: error.to_string() })?;
-        Ok(wishes.within(&file))
+        Ok(specification.within(&file))
     }
 
     /// The same, said of a file in messages.
@@ -159,9 +154,6 @@ impl Wishes {
     }
 
     /// The limits in the order in which they are given, each with its name: those of the file, then those as typed, which replace them.
-    ///
-    /// # Errors
-    /// One of them has no name or no value.
     pub(super) fn all_limits(&self) -> Result<Vec<(String, Typed)>, Error> {
         let mut all = Vec::new();
         for (name, value) in &self.limits {

@@ -1,7 +1,7 @@
 //! Numbers of a design as a person reads them.
 
 use super::candidate::Candidate;
-use super::requirements::Requirements;
+use super::requirements::{Constraint, Requirements};
 use retune_model::{Measure, Parameter, unit};
 use retune_study::rounded;
 use std::f64::consts::TAU;
@@ -56,11 +56,14 @@ pub(super) fn legible(words: &str) -> String {
 
 /// An angular frequency, rad/s, in a unit.
 pub(super) fn frequency(omega: f64, unit: &'static str) -> String {
-    let size = unit::FREQUENCY.iter().find(|(name, _)| *name == unit).map_or(1.0, |(_, size)| *size);
-    format!("{} {unit}", rounded(omega / size, 4))
+    format!("{} {unit}", rounded(omega / radians(unit), 4))
 }
 
-/// The parameters of a damper to build.
+/// A unit of frequency in rad/s.
+pub(super) fn radians(unit: &str) -> f64 {
+    unit::FREQUENCY.iter().find(|(name, _)| *name == unit).map_or(1.0, |(_, size)| *size)
+}
+
 pub(super) fn parameters(of: &Candidate) -> String {
     let Some(damper) = of.damper() else { return "no damper".to_owned() };
     let gaps = if damper.contact.is_some() { &Parameter::PAPER[..] } else { &Parameter::PAPER[..2] };
@@ -83,7 +86,6 @@ pub(super) fn tuning(of: &Candidate, requirements: &Requirements) -> String {
     format!("{}, damping {} %", frequency(natural, unit), rounded(100.0 * zeta, 3))
 }
 
-/// The natural frequency of the structure, in words.
 pub(super) fn natural(requirements: &Requirements) -> String {
     let omega = requirements.natural_frequency();
     match requirements.frequencies {
@@ -95,4 +97,43 @@ pub(super) fn natural(requirements: &Requirements) -> String {
 /// A share in percent, to three digits.
 pub(super) fn percent(share: f64) -> String {
     format!("{} %", rounded(100.0 * share, 3))
+}
+
+/// What was asked, broken into lines for the screen.
+pub(super) fn question(requirements: &Requirements) -> Vec<String> {
+    let broken = broken_at_spaces();
+    asked(requirements).iter().map(|line| textwrap::fill(line, &broken)).collect()
+}
+
+pub(super) fn asked(requirements: &Requirements) -> Vec<String> {
+    let own = natural(requirements);
+    let critical = 2.0 * requirements.m1 * requirements.natural_frequency();
+    let driving = match requirements.source {
+        (Parameter::Imbalance, imbalance) => format!("an imbalance of {} kg·m", rounded(imbalance, 4)),
+        (Parameter::Base, base) => format!("a base that moves by {}", sized(base, "m")),
+        (Parameter::BaseAcceleration, a) => format!("a base that is accelerated by {}", sized(a, "m/s²")),
+        (_, force) => format!("a force of {}", sized(force, "N")),
+    };
+    let unit = requirements.frequencies;
+    let [from, to] = requirements.band.map(|end| frequency(end, unit));
+    let from = from.trim_end_matches(unit).trim_end();
+    let limits: Vec<String> =
+        requirements.constraints().into_iter().map(|constraint| limit(requirements, constraint)).collect();
+    let limits = if limits.is_empty() { String::new() } else { format!(", {}", limits.join(", ")) };
+    let Requirements { m1, k1, c1, mass, goal, .. } = requirements;
+    let (damping, share, goal) = (percent(c1 / critical), percent(mass / m1), goal.name());
+    let ([m1, mass], k1) = ([*m1, *mass].map(|mass| sized(mass, "kg")), sized(*k1, "N/m"));
+    vec![
+        format!("Structure: {m1} on {k1}, {own}, damping {damping}; {driving}, {from} to {to}."),
+        format!("Asked for: a damper of {mass} ({share}) with the least {goal}{limits}."),
+    ]
+}
+
+pub(super) fn limit(requirements: &Requirements, constraint: Constraint) -> String {
+    format!("{} at most {}", constraint.name(), sized(requirements.allowed(constraint), constraint.unit()))
+}
+
+/// Lines of at most 80 columns that are broken at spaces alone, so that no name of a file is.
+pub(super) fn broken_at_spaces() -> textwrap::Options<'static> {
+    textwrap::Options::new(80).subsequent_indent("  ").word_splitter(textwrap::WordSplitter::NoHyphenation)
 }

@@ -219,8 +219,7 @@ fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
 /// A certified design in words.
 fn certificate(fronts: &Fronts, Certified { under, design, certificate, .. }: &Certified) -> String {
     let reference = fronts.reference(*under);
-    let lines: Vec<String> =
-        certificate.short().to_string().lines().map(|line| line.trim().to_owned()).collect();
+    let lines: Vec<String> = certificate.lines();
     format!(
         "{}, {}: {} with {} J (best {} under the same bound: {}). {}",
         fronts.name(design.damper),

@@ -7,10 +7,10 @@ use super::descents::Task;
 use super::designs::{Fronts, GIVEN};
 use crate::certify::judge;
 use crate::needs::Largest;
-use crate::resampled::{finer, worst};
 use crate::rows::of_each;
 use crate::searches::Searches;
 use crate::tune::ends::Ends;
+use crate::tune::objective::{finer, worst};
 use crate::{Error, Silent};
 use retune_model::{Design, Measure, PerVariable, Scene};
 use retune_optim::Limit;
@@ -144,7 +144,7 @@ impl Fronts {
         let scene = study.scene_at(at).unwrap_or(study.scene);
         let needs = Largest::of(&study, &scene);
         let certificate = judge(&Study { scene, ..study })?;
-        let (verdict, reason) = (certificate.short().verdict(), certificate.reason().to_owned());
+        let (verdict, reason) = (certificate.verdict(), certificate.reason().to_owned());
         Ok(Candidate { verdict, reason, needs, ..design.clone() })
     }
 

@@ -1,6 +1,6 @@
 //! A table or figure of the paper, reproduced: our results, and the paper's statements with a verdict on each.
 
-use retune_report::document::{Picture, Statement, Verdict};
+use retune_report::document::{Figure, Statement, Verdict};
 use retune_report::table::Table;
 use retune_report::{Sheet, drawing};
 use serde::{Deserialize, Serialize};
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub struct Item {
     /// The settings of our results.
     pub made_by: String,
-    pub pictures: Vec<Picture>,
+    pub pictures: Vec<Figure>,
     /// Tables for readers, each with its caption.
     pub tables: Vec<(String, Table)>,
     pub statements: Vec<Statement>,
@@ -35,7 +35,7 @@ impl Item {
     /// Adds a figure, whose file is `name.svg`.
     pub fn picture(&mut self, name: &str, sheet: &Sheet, caption: &str) {
         let [file, caption] = [format!("{name}.svg"), caption.to_owned()];
-        self.pictures.push(Picture { file, drawing: drawing(sheet), caption });
+        self.pictures.push(Figure { file, drawing: drawing(sheet), caption });
     }
 
     pub fn table(&mut self, caption: &str, table: Table) {

@@ -139,7 +139,7 @@ fn blocks(entry: &Entry, item: &Item) -> Vec<Block> {
     let folded = |subject: &str, inner: Vec<Block>| {
         (!inner.is_empty()).then(|| Block::Folded(subject.to_owned(), inner))
     };
-    let mut pictures = item.pictures.iter().cloned().map(Block::Picture);
+    let mut pictures = item.pictures.iter().cloned().map(Block::Linked);
     let count = item.statements.len();
     let statements = (count > 0).then(|| Block::Statements(item.statements.clone()));
     let subject = format!("{}: verdicts, rules and numbers", counted(count as u64, "statement"));

@@ -6,7 +6,7 @@ use crate::designs::Row;
 use crate::fronts::SAME;
 use crate::pages::over as over_band;
 use crate::searches::Searches;
-use crate::tune::{Found, Optimum};
+use crate::tune::Optimum;
 use retune_model::{Design, Parameter};
 use retune_study::{PaperStudy, Setting, SpringBounds, Study, Table2, short};
 
@@ -29,7 +29,7 @@ pub(super) fn tune(
             over_band(&study)
         ))?;
         let optimum = searched(study.clone(), said.samples, &format!("k1-{k1}"), searches)?;
-        let design = optimum.found().damper.design_of(study.varied());
+        let design = optimum.damper.design_of(study.varied());
         found.push((k1, design, Row::of_optimum(&label(k1), name, &study, &optimum)));
         Ok(design)
     };
@@ -54,7 +54,7 @@ pub(super) fn tune(
         searches.watch.log(&format!("\n{} for all k1, {}", tuned.name, over_band(&study)))?;
         let optimum = searched(study.clone(), said.samples, name, searches)?;
         rows.push(Row::of_optimum(name, &tuned.name, &study, &optimum));
-        tuned.kept.push((Tuning::Robust, optimum.found().damper.design_of(study.varied())));
+        tuned.kept.push((Tuning::Robust, optimum.damper.design_of(study.varied())));
     }
     Ok((Tuned { anew: designs, ..tuned }, rows))
 }
@@ -69,7 +69,7 @@ fn searched(
 ) -> Result<Optimum, Error> {
     let optimum = searches.tune(&study, place)?;
     searches.watch.log(&optimum.report())?;
-    let Found { damper, e1_max } = optimum.found();
+    let (damper, e1_max) = (optimum.damper, optimum.value());
     let own = study.scene.primary.stiffness.get();
     let rises = |again: f64| again > (1.0 + SAME) * e1_max;
     let at = damper.design_of(study.varied());

@@ -2,7 +2,7 @@
 
 use super::range::Threshold;
 use crate::Error;
-use crate::resampled::finer;
+use crate::tune::objective::finer;
 use retune_model::{Design, NonNegative, Positive, Scene};
 use retune_optim::Stiffnesses;
 use retune_study::Study;

@@ -15,7 +15,6 @@ const NONE: Stroke = Stroke::new(BLACK, 1.1, Dash::Short);
 /// Fewer values than this are marked one by one.
 const FEW: usize = 40;
 
-/// The figure of a sweep as SVG.
 pub fn draw(sweep: &Sweep, table: &Table) -> String {
     let names = shown(sweep);
     let charts: Vec<Chart> =
@@ -33,20 +32,14 @@ pub fn draw(sweep: &Sweep, table: &Table) -> String {
     svg(&Sheet { stacked: true, description, legend, caption, ..Sheet::of(title(sweep), charts) })
 }
 
-/// How a value is marked.
 const MARK: Mark = Mark::new(Shape::Disc, VERMILION, 3.0);
 
 fn peak(sweep: &Sweep, table: &Table, name: &str) -> Option<String> {
     let (row, value) = extreme(&table.column(name)?, 1.0)?;
     let over = sweep.plan().over;
     let unit = table.unit(name);
-    let at = rounded(sweep.value(row), 4);
-    Some(format!(
-        "{name} is largest at {} = {at} {}: {} {unit}",
-        over.symbol(),
-        over.unit(),
-        rounded(value, 4)
-    ))
+    let [at, value] = [sweep.value(row), value].map(|value| rounded(value, 4));
+    Some(format!("{name} is largest at {over} = {at} {}: {value} {unit}", over.unit()))
 }
 
 fn made_by(sweep: &Sweep) -> String {

@@ -18,7 +18,6 @@ pub struct Sweep {
     axis: Axis,
 }
 
-/// The points.
 impl Rows for Sweep {
     fn len(&self) -> usize {
         self.axis.points()
@@ -105,7 +104,6 @@ impl Sweep {
         (numbers, reason)
     }
 
-    /// One run with the damper, and one without.
     fn runs(&self, scene: &Scene) -> (Vec<f64>, Option<String>) {
         let (window, settings) = (self.study.window.window(), self.study.solver.settings());
         let mut numbers = Vec::with_capacity(self.width());
@@ -132,7 +130,6 @@ impl Sweep {
         (numbers, reason)
     }
 
-    /// The objective with the damper, and without.
     fn objective(&self, scene: &Scene) -> (Vec<f64>, Option<String>) {
         let (goal, settings) = (self.study.goal(), self.study.solver.settings());
         let bare = Goal { limits: Limits::default(), ..goal.clone() };

@@ -7,7 +7,6 @@ use retune_report::table::{Column, Table};
 use retune_study::{counted, frequency, hertz_and_rpm, over, rounded};
 use textwrap::{Options, fill};
 
-/// Widest line.
 const WIDEST: usize = 80;
 /// Width of a column with a frequency or another parameter, and of one with a quantity.
 const NARROW: usize = 9;
@@ -120,12 +119,8 @@ fn answer(sweep: &Sweep, table: &Table, values: &[f64], name: &str) -> Vec<Strin
         let numbers = table.column(column)?;
         let (high, low) = (extreme(&numbers, 1.0)?, extreme(&numbers, -1.0)?);
         let words = |(row, value): (usize, f64)| {
-            format!(
-                "{} {unit}{}at {}",
-                rounded(value, 4),
-                if unit.is_empty() { "" } else { " " },
-                at(sweep, values[row])
-            )
+            let space = if unit.is_empty() { "" } else { " " };
+            format!("{} {unit}{space}at {}", rounded(value, 4), at(sweep, values[row]))
         };
         let same = high.1 == low.1;
         let always = format!("{} {unit} at every value", rounded(high.1, 4));
@@ -190,7 +185,6 @@ fn cell(value: f64) -> String {
     if value.is_finite() { rounded(value, 4) } else { "-".to_owned() }
 }
 
-/// The rows that are shown.
 fn chosen(count: usize, ends: impl Iterator<Item = usize>, all: bool) -> Vec<usize> {
     if all || count <= FEW {
         return (0..count).collect();

@@ -1,7 +1,7 @@
 //! The files of a search, computed again: the rows of its grid and its refinements, its band, the design that it found.
 
 use super::band;
-use super::files::{OPTIMUM, SEARCHED};
+use super::log::{OPTIMUM, SEARCHED};
 use super::objective::{coarse, objective, searched};
 use crate::again::{Made, Row, Source, design, json};
 use crate::certify::certify;
@@ -121,7 +121,6 @@ pub(super) fn certificate(place: &Path, name: &str) -> Result<Made, Error> {
     }
 }
 
-/// The study of the results in a directory.
 fn study_of(place: &Path) -> Result<Study, Error> {
     Ok(retune_study::read(&place.join(resolved::ONE))?)
 }

@@ -1,6 +1,6 @@
 //! The band of a tuned damper: the objective against ω without a damper, with the damper of the study, and with the tuned one.
 
-use super::files::BAND;
+use super::log::BAND;
 use crate::Error;
 use crate::amount::{self, measured};
 use crate::summary::{MadeBy, baseline};
@@ -9,10 +9,9 @@ use retune_model::{Measure, NonNegative, Scene};
 use retune_optim::{Band, Goal, Objective, Response};
 use retune_report::colour::{BLACK, BLUE, VERMILION};
 use retune_report::table::{Cell, Column, Table};
-use retune_report::{Axis, Chart, Dash, Key, Layer, Sheet, Stroke, Width, svg};
+use retune_report::{Axis, Chart, Dash, Key, Layer, Sheet, Stroke, svg};
 use retune_store::Directory;
-use retune_study::Study;
-use retune_study::short;
+use retune_study::{Study, short};
 
 /// Number of frequencies of the curves if each is a closed form.
 const FINE: usize = 601;
@@ -24,9 +23,6 @@ pub(crate) type Rows = Vec<(f64, [f64; 3])>;
 
 /// Writes `band.csv` and `band.svg`, and returns their rows, if the objective has a band; `tuned` is the scene with the damper that was found. Missing values (a steady motion
 /// that reaches a wall, a run that fails) are empty fields and gaps.
-///
-/// # Errors
-/// A file cannot be written.
 pub(super) fn write(study: &Study, tuned: Scene, results: &Directory) -> Result<Option<Rows>, Error> {
     let objective = study.objective();
     let Some((term, band)) = first(&objective).and_then(|term| Some((term, term.omega?.of(&tuned.primary))))
@@ -62,7 +58,6 @@ pub(super) fn write(study: &Study, tuned: Scene, results: &Directory) -> Result<
     Ok(Some(rows))
 }
 
-/// The columns of the three curves.
 pub(crate) fn columns(quantity: Measure) -> [String; 3] {
     ["none", "study", "tuned"].map(|of| format!("{}_{of}", quantity.name()))
 }
@@ -80,7 +75,6 @@ pub(crate) fn energy(study: &Study, scene: Scene, term: &Objective) -> f64 {
     value.map_or(f64::NAN, |found| found.value)
 }
 
-/// The first term of an objective.
 pub(crate) fn first(objective: &Objective) -> Option<&Objective> {
     objective.terms().first().map(|(_, term)| *term)
 }
@@ -106,31 +100,25 @@ fn picture(study: &Study, rows: &[(f64, [f64; 3])], worst: [f64; 3]) -> String {
     };
     let words: Vec<String> = (0..3).map(|i| format!("{}{}", lines[i].0, said(worst[i]))).collect();
     let layers = lines.iter().enumerate().map(|(i, &(_, stroke))| {
-        let points = rows.iter().map(|(omega, energies)| (*omega, energies[i])).collect();
-        Layer::Line { points, stroke }
+        let points = rows.iter().map(|(omega, energies)| (*omega, energies[i]));
+        Layer::line(points, stroke)
     });
-    let top = rows.iter().flat_map(|row| row.1).filter(|e| e.is_finite()).fold(0.0, f64::max);
     let (first, last) = (rows[0].0, rows[rows.len() - 1].0);
-    let chart = Chart {
-        title: String::new(),
-        x: Axis::linear("ω, rad/s", (first, last)),
-        y: Axis::linear(amount::label(quantity), (0.0, if top > 0.0 { 1.06 * top } else { 1.0 })),
-        layers: layers.collect(),
-        height: 160.0,
-    };
+    let chart = Chart::of(
+        Axis::linear("ω, rad/s", (first, last)),
+        Axis::from_zero(amount::label(quantity), rows.iter().flat_map(|row| row.1)),
+        layers.collect(),
+        160.0,
+    );
     svg(&Sheet {
-        title: format!("{name} over the band"),
         description: format!(
             "{name} against ω from {} to {} rad/s. The worst of each curve: {}.",
             short(first),
             short(last),
             words.join("; ")
         ),
-        width: Width::Column,
-        charts: vec![chart],
-        columns: 1,
-        stacked: false,
         legend: lines.iter().map(|(_, stroke)| Key::Line(*stroke)).zip(words).collect(),
         caption: vec![MadeBy::new(study).to_string()],
+        ..Sheet::of(format!("{name} over the band"), vec![chart])
     })
 }

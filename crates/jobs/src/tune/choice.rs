@@ -5,7 +5,7 @@ use super::refine::{Refined, Run};
 use crate::Error;
 use crate::amount::Amount;
 use crate::certify::{Certificate, Verdict, certify, complete, judge};
-use crate::resampled::worst;
+use crate::tune::objective::worst;
 use retune_model::{Measure, PerVariable};
 use retune_optim::Limit;
 use retune_study::Study;
@@ -26,12 +26,10 @@ pub(crate) struct PassedOver {
     design: PerVariable<f64>,
     #[serde(flatten)]
     value: Amount,
-    /// Why.
     words: String,
 }
 
 impl PassedOver {
-    /// A note on screen.
     pub(super) fn words(&self) -> String {
         let Self { start, value, words, .. } = self;
         format!("note: passed over for it: start {start}, {}, {words}", value.words())
@@ -72,9 +70,6 @@ fn is_less(other: &[f64; 2], own: &[f64; 2]) -> bool {
 
 /// Of ends in one valley, where values differ by nothing that matters, the place among those `seen` of the one that needs the least and is as
 /// safe as that at `chosen`; ends that were not seen are certified for it.
-///
-/// # Errors
-/// As [`judge`].
 fn lightest(
     chosen: usize,
     seen: &mut Vec<(usize, Certificate)>,
@@ -91,7 +86,7 @@ fn lightest(
         as_good.iter().copied().filter(within).map(|other| (other, burden(other))).collect();
     lighter.retain(|(_, other)| is_less(other, &own));
     lighter.sort_by(|(_, a), (_, b)| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-    let least = rank(certificate.verdict, certificate.safe_to());
+    let least = rank(certificate.judged.verdict, certificate.safe_to());
     for (number, _) in lighter {
         let known = seen.iter().position(|(known, _)| *known == number);
         if known.is_none() {
@@ -99,7 +94,7 @@ fn lightest(
         }
         let place = known.unwrap_or(seen.len() - 1);
         let certificate = &seen[place].1;
-        if rank(certificate.verdict, certificate.safe_to()) <= least {
+        if rank(certificate.judged.verdict, certificate.safe_to()) <= least {
             return Ok(place);
         }
     }
@@ -108,9 +103,6 @@ fn lightest(
 
 /// Chooses, of the ends of the refinements within 1 % of the best, one of the best verdict, of those that are robust the one with the largest
 /// margin of the force, of those the best, and of those within 0.1 % of it the one with the least contact force, then stroke. The certificate of the choice, and what it passes over. Ends are compared at the study's tolerance, whatever that of its search.
-///
-/// # Errors
-/// As [`certify`].
 pub(super) fn choose(study: &Study, refined: &mut Refined) -> Result<(Certificate, Vec<PassedOver>), Error> {
     let settings = study.solver.settings();
     let value = |Run { minimum, .. }: &Run| {
@@ -143,16 +135,16 @@ pub(super) fn choose(study: &Study, refined: &mut Refined) -> Result<(Certificat
         }
     }
     let all: Vec<(Option<Verdict>, f64)> =
-        seen.iter().map(|(_, certificate)| (certificate.verdict, certificate.safe_to())).collect();
+        seen.iter().map(|(_, certificate)| (certificate.judged.verdict, certificate.safe_to())).collect();
     let chosen = lightest(place(&all), &mut seen, &as_good, &values, &of)?;
-    let taken = rank(seen[chosen].1.verdict, seen[chosen].1.safe_to());
+    let taken = rank(seen[chosen].1.judged.verdict, seen[chosen].1.safe_to());
     let smaller = |(number, _): &&(usize, Certificate)| values[*number] < values[seen[chosen].0];
     let passed = seen.iter().filter(smaller).map(|(number, certificate)| PassedOver {
         start: number + 1,
         design: PerVariable::of(refined.objective.variables(), &refined.runs[*number].minimum.x),
         value: Amount::new(study.quantity(), retune_optim::value_of(values[*number])),
-        words: if rank(certificate.verdict, certificate.safe_to()) > taken {
-            certificate.words.clone()
+        words: if rank(certificate.judged.verdict, certificate.safe_to()) > taken {
+            certificate.reason().to_owned()
         } else {
             "as good, but it needs a larger contact force or stroke".to_owned()
         },

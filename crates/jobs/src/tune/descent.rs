@@ -1,13 +1,14 @@
 //! The finish of every search: descents by derivatives from where its refinements end, and from the best TMD.
 
 use super::log::worth;
+use super::objective::Task;
 use super::refine::{Descended, Refined, Run};
 use super::tmd::tmd;
-use crate::{Error, Observer};
+use crate::Error;
 use rayon::prelude::*;
 use retune_optim::{Counts, DesignObjective, Foot, INFEASIBLE, Minimum, Point, Procedure, Row, Stop};
 use retune_store::Journal;
-use retune_study::{Search, Study, counted};
+use retune_study::{Search, counted};
 use std::cell::OnceCell;
 
 /// A value that is lower by less than this share is none that a descent has found.
@@ -15,23 +16,15 @@ const GAIN: f64 = 1e-5;
 
 /// Goes down from the end of every refinement, and from the best TMD of a damper with walls: in a kink, where several peaks are equally high or a
 /// limit is reached, a simplex stops before it arrives. An end that is better takes the place of the refinement's.
-///
-/// # Errors
-/// The journal cannot be written.
-pub(super) fn finish(
-    refined: &mut Refined,
-    study: &Study,
-    search: &Search,
-    (journal, stage): (&Journal, &str),
-    watch: &dyn Observer,
-) -> Result<(), Error> {
+pub(super) fn finish(task: &Task, refined: &mut Refined) -> Result<(), Error> {
+    let Task { study, search, journal, place, watch } = *task;
     let Refined { objective, runs, .. } = refined;
     let tmd = tmd(study, search);
     let starts: Vec<&[f64]> = runs.iter().map(|run| run.minimum.x.as_slice()).chain(tmd.as_deref()).collect();
     let count = runs.len();
     let foot = |(i, start): (usize, &&[f64])| {
         let worth_it = i == count || objective.goal().has_pieces();
-        worth_it.then(|| descend(objective, search, start, journal, &format!("{stage} descent")))
+        worth_it.then(|| descend(objective, search, start, journal, &format!("{place}fminsearch descent")))
     };
     let feet: Vec<Option<Foot>> = starts.par_iter().enumerate().map(foot).collect();
     journal.check()?;

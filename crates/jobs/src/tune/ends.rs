@@ -2,6 +2,7 @@
 
 use super::descent::finish;
 use super::global::{Basins, Explored, global};
+use super::objective::Task;
 use super::refine::each;
 use crate::{Error, Observer};
 use retune_model::{Design, PerVariable};
@@ -27,20 +28,17 @@ pub struct Ends {
 /// The study has nothing to tune, nothing can be computed, or the journal cannot be written.
 pub fn ends(study: &Study, journal: &Journal, place: &str, watch: &dyn Observer) -> Result<Ends, Error> {
     let search = study.search().map_err(Error::rule(study))?;
-    let explored = global(study, &search, (journal, place), watch)?;
-    let stage = format!("{place}fminsearch");
+    let task = Task { study, search: &search, journal, place, watch };
+    let explored = global(&task)?;
     let starts = starts(&search, &[], explored.as_ref());
-    let mut refined = each(study, &search, &starts, (journal, &stage), |_, _, _| Ok(()))?;
-    finish(&mut refined, study, &search, (journal, &stage), watch)?;
+    let mut refined = each(&task, &starts, |_, _, _| Ok(()))?;
+    finish(&task, &mut refined)?;
     let whole = |tuned: &PerVariable<f64>, of: &Design| {
         Design::new(|variable| tuned.get(variable).unwrap_or_else(|| of.get(variable))).ok()
     };
     let best = Design::of_varied(&refined.objective.damper(&refined.best().minimum.x)?, &search.variables);
     let places: Vec<PerVariable<f64>> = match &explored {
-        Some(explored) => {
-            let basins = Basins::new(explored, study.quantity(), &search, &refined, (journal, place), 0);
-            basins.places().collect()
-        }
+        Some(explored) => Basins::new(&task, explored, &refined, 0).places().collect(),
         None => refined.runs.iter().map(|run| PerVariable::of(&search.variables, &run.minimum.x)).collect(),
     };
     journal.check()?;

@@ -1,11 +1,9 @@
 //! The global search of a study, and the basins that it and the refinements found.
 
-use super::files::BASINS;
-use super::log::worth;
-use super::objective::{coarse, kept, searched};
+use super::log::{BASINS, worth};
+use super::objective::{Task, coarse, kept, searched};
 use super::refine::{Refined, Run, columns};
 use crate::Error;
-use crate::Observer;
 use crate::amount::{Amount, measured};
 use rayon::prelude::*;
 use retune_model::{Measure, Parameter, PerVariable};
@@ -14,38 +12,25 @@ use retune_optim::{
 };
 use retune_report::cells;
 use retune_report::table::{Cell, Column, Table};
-use retune_store::{Directory, Journal};
-use retune_study::{Search, Study};
-use retune_study::{counted, joined, short};
+use retune_store::Directory;
+use retune_study::{Search, counted, joined, short};
 use serde::Serialize;
 use std::time::Instant;
 
-/// The results of a global search.
 pub struct Explored {
     /// The searches, in the order of their starts.
     pub searches: Vec<Descent>,
-    /// The basins they reached.
     pub basins: Vec<Basin>,
-    /// The box.
     pub space: Space,
     /// The distance below which two ends are one basin.
     pub apart: f64,
-    /// The designs that could not be computed.
     pub failures: Failures,
-    /// The numbers of designs evaluated.
     pub counts: Counts,
 }
 
 /// Makes the global search of a study, if it asks for one. The journal keeps its values under names that begin with `place`.
-///
-/// # Errors
-/// No design could be computed.
-pub(super) fn global(
-    study: &Study,
-    search: &Search,
-    (journal, place): (&Journal, &str),
-    watch: &dyn Observer,
-) -> Result<Option<Explored>, Error> {
+pub(super) fn global(task: &Task) -> Result<Option<Explored>, Error> {
+    let Task { study, search, journal, place, watch } = *task;
     let Some((global, space, apart)) = search.global.clone() else { return Ok(None) };
     let objective = coarse(study, search, &search.variables);
     watch.log(&format!(
@@ -87,13 +72,12 @@ impl Explored {
         let best = &self.basins[0].best;
         let at = search.variables.iter().zip(&best.x);
         let at: Vec<String> = at.map(|(variable, value)| format!("{variable} = {}", short(*value))).collect();
+        let evaluations = counted(self.counts.evaluations, "evaluation");
+        let searches = counted(self.searches.len() as u64, "search");
+        let (places, best) = (counted(self.basins.len() as u64, "place"), worth(best.value, quantity));
+        let at = at.join(", ");
         format!(
-            "global: {seconds:.1} s, {}; {} came to {}; the best has {} at {}",
-            counted(self.counts.evaluations, "evaluation"),
-            counted(self.searches.len() as u64, "search"),
-            counted(self.basins.len() as u64, "place"),
-            worth(best.value, quantity),
-            at.join(", ")
+            "global: {seconds:.1} s, {evaluations}; {searches} came to {places}; the best has {best} at {at}"
         )
     }
 }
@@ -103,7 +87,6 @@ impl Explored {
 pub struct Basins {
     /// Designs evaluated as samples and by the searches.
     pub(crate) evaluations: u64,
-    /// Number of searches.
     pub(crate) searches: usize,
     /// Number of them that ended in the basin of the optimum.
     pub(crate) reached_optimum: usize,
@@ -119,23 +102,16 @@ pub(crate) struct BasinNote {
     /// null if it breaks a limit.
     #[serde(flatten)]
     pub(crate) found: Amount,
-    /// Searches that ended here.
     pub(crate) searches: usize,
-    /// Refinements that ended here.
     pub(crate) refinements: usize,
 }
 
 impl Basins {
     /// Groups the ends of searches and refinements: the end of a search whose basin was refined is the end of that
     /// refinement. In `runs` the refinements of basins follow `skip` others, in the order of the basins.
-    pub(super) fn new(
-        explored: &Explored,
-        quantity: Measure,
-        search: &Search,
-        refined: &Refined,
-        (journal, place): (&Journal, &str),
-        skip: usize,
-    ) -> Self {
+    pub(super) fn new(task: &Task, explored: &Explored, refined: &Refined, skip: usize) -> Self {
+        let Task { study, search, journal, place, .. } = *task;
+        let quantity = study.quantity();
         let runs = &refined.runs;
         let stage = format!("{place}basins");
         let value = kept(&refined.objective, journal, &stage, || ());
@@ -174,7 +150,6 @@ impl Basins {
         self.basins.iter().map(|basin| basin.design)
     }
 
-    /// Writes `basins.csv`.
     pub(super) fn write(&self, objective: &DesignObjective, results: &Directory) -> Result<(), Error> {
         let quantity = self.basins.first().map_or_else(Measure::default, |basin| basin.found.quantity);
         let mut table = Table::new(["basin", "searches", "refinements"].map(|name| Column::new(name, "")));
@@ -192,7 +167,6 @@ impl Basins {
         Ok(results.write(BASINS, &table.csv())?)
     }
 
-    /// A line on screen.
     pub(super) fn report(&self) -> String {
         let Self { searches, reached_optimum, basins, .. } = self;
         let next = basins.get(1).map(|basin| basin.found).filter(|found| !found.value.is_nan());

@@ -1,9 +1,21 @@
 //! The objective of a study as searches call it.
 
-use retune_optim::{DesignObjective, Goal, Parameter};
+use crate::Observer;
+use retune_model::{Design, Measure, Positive};
+use retune_optim::{DesignObjective, Evaluation, Goal, Limit, Limits, Parameter};
 use retune_solver::Settings;
 use retune_store::Journal;
 use retune_study::{Search, Study};
+
+/// A search, with the journal that keeps its values under names that begin with `place`, and who hears of it.
+#[derive(Clone, Copy)]
+pub(crate) struct Task<'a> {
+    pub study: &'a Study,
+    pub search: &'a Search,
+    pub journal: &'a Journal,
+    pub place: &'a str,
+    pub watch: &'a dyn Observer,
+}
 
 /// An objective as searches call it: values in the journal are not computed again; `on_known` is called for each of them.
 pub fn kept<'a>(
@@ -51,4 +63,30 @@ pub(crate) fn coarse(study: &Study, search: &Search, variables: &[Parameter]) ->
     let settings = Settings { rtol: said.rtol.unwrap_or(own.rtol), ..own };
     let goal = Goal { peaks: said.peaks, ..study.goal() };
     DesignObjective::new(study.scene, search.damper, variables.to_vec(), goal, settings).following()
+}
+
+/// The value of a design as it stands in the tables: the worst over the band of its study on so many samples.
+pub(crate) fn value(study: &Study, samples: usize, at: &Design) -> Option<f64> {
+    Some(worst(&finer(study, samples, at)?)?.value)
+}
+
+/// A study with a design in its scene, its band on so many samples; none where there is no such scene.
+pub(crate) fn finer(study: &Study, samples: usize, at: &Design) -> Option<Study> {
+    let mut study = study.clone();
+    study.scene = study.scene_at(at)?;
+    if let Some(band) = study.optimize.as_mut().and_then(|optimize| optimize.objective.omega.as_mut()) {
+        band.samples = samples;
+    }
+    Some(study)
+}
+
+/// The worst of the scene of a study over its band; none where it cannot be run.
+pub(crate) fn worst(study: &Study) -> Option<Evaluation> {
+    // Limits that every run breaks: they have the largest stroke and force searched for, peaks between samples included.
+    let mut goal = study.goal();
+    let least = Positive::new(f64::MIN_POSITIVE).ok()?;
+    let none = Limits::default().since(goal.limits.from);
+    goal.limits =
+        Measure::OF_DAMPER.into_iter().fold(none, |limits, measure| limits.with(Limit::Of(measure), least));
+    goal.evaluate(&study.scene, &study.solver.settings(), f64::INFINITY).ok()
 }

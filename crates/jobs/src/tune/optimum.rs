@@ -2,31 +2,30 @@
 
 mod answer;
 pub(crate) mod notes;
-mod run;
 
 use super::choice::PassedOver;
 use super::global::{Basins, Explored};
-use super::refine::Refined;
+use super::refine::{Descended, Refined, Run};
 use super::surf::Surf;
 use super::valley::Valley;
 use crate::Error;
 use crate::amount::Amount;
-use crate::certify::Short;
+use crate::certify::Certificate;
 use crate::needs::Needs;
 use crate::summary::{MadeBy, Summary, TunedDamper, baseline};
 use notes::{Goal, LimitNote, Met};
-use retune_model::{Parameter, PerVariable, Scene};
-use retune_optim::{Evaluation, Failures, Scaling, Stop, value_of};
+use retune_model::{Measure, Parameter, PerVariable, Scene};
+use retune_optim::{Evaluation, Failures, Minimum, Scaling, Stop, value_of};
 use retune_study::{Search, Study, design_cells, short};
-use run::RunNote;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// The best design and how it was found. SI units.
 #[derive(Clone, Debug, Serialize)]
 pub struct Optimum {
     pub(crate) damper_type: &'static str,
+    /// The best design.
     #[serde(flatten)]
-    pub(crate) damper: TunedDamper,
+    pub damper: TunedDamper,
     #[serde(flatten)]
     value: Amount,
     /// The meaning of that value, if it is not E1max in a window at the scene's omega.
@@ -62,8 +61,9 @@ pub struct Optimum {
     /// How far each parameter may go, the others held, until the value is 0.1 % larger.
     #[serde(rename = "within_0.1_percent")]
     valleys: Vec<Valley>,
-    /// The short form of `certificate.json`.
-    certificate: Short,
+    /// `certificate.json`, here in its short form.
+    #[serde(serialize_with = "in_short")]
+    pub(crate) certificate: Certificate,
     /// The largest values over all that the answer covers, each at its own place.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) needs: Option<Needs>,
@@ -84,18 +84,6 @@ pub(super) struct Searched<'a> {
     pub valleys: Vec<Valley>,
 }
 
-/// A damper that was found, and its value by the objective.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct Found {
-    /// The damper.
-    #[serde(flatten)]
-    pub damper: TunedDamper,
-    /// E1max, J, or the value of the study's quantity.
-    #[serde(rename = "E1max")]
-    pub e1_max: f64,
-}
-
-/// The best point of the grid.
 #[derive(Clone, Debug, Serialize)]
 struct GridBest {
     points: usize,
@@ -104,7 +92,6 @@ struct GridBest {
     value: Amount,
 }
 
-/// The refinements.
 #[derive(Clone, Debug, Serialize)]
 struct Refinement {
     /// "absolute" or "scaled": what TolX measures.
@@ -139,7 +126,7 @@ impl Optimum {
         refined: &Refined,
         summary: Summary,
         evaluation: Evaluation,
-        certificate: Short,
+        certificate: Certificate,
     ) -> Result<Self, Error> {
         let (best, quantity) = (refined.best(), study.quantity());
         let damper = refined.objective.damper(&best.minimum.x)?;
@@ -185,9 +172,9 @@ impl Optimum {
         })
     }
 
-    /// The best design.
-    pub fn found(&self) -> Found {
-        Found { damper: self.damper, e1_max: self.value.value }
+    /// Its value by the objective of its study, in the unit of the quantity.
+    pub fn value(&self) -> f64 {
+        self.value.value
     }
 
     /// The verdict of its certificate.
@@ -201,12 +188,13 @@ impl Optimum {
     }
 
     /// Refuses a design that breaks the limits of its study.
-    ///
-    /// # Errors
-    /// [`Error::Infeasible`].
     pub fn check_limits(&self) -> Result<(), Error> {
-        self.certificate.check_limits(self.made_by.study())
+        self.certificate.check_limits()
     }
+}
+
+fn in_short<S: Serializer>(certificate: &Certificate, serializer: S) -> Result<S::Ok, S::Error> {
+    certificate.short().serialize(serializer)
 }
 
 /// The header of the paper's Table 2.
@@ -248,5 +236,52 @@ pub(crate) fn stop_words(stop: Stop) -> &'static str {
         Stop::MaxIter => "stopped at MaxIter",
         Stop::MaxFunEvals => "stopped at MaxFunEvals",
         Stop::Interrupted => "interrupted",
+    }
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct RunNote {
+    pub(super) start: PerVariable<f64>,
+    #[serde(flatten)]
+    pub(super) at_start: Amount,
+    pub(super) found: PerVariable<f64>,
+    #[serde(flatten)]
+    pub(super) value: Amount,
+    pub(super) iterations: u64,
+    pub(super) func_count: u64,
+    pub(super) stop: Stop,
+    /// The descent by derivatives that went on from there, where it found a better design.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) descent: Option<DescentNote>,
+}
+
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(super) struct DescentNote {
+    #[serde(flatten)]
+    pub(super) from: Amount,
+    pub(super) evaluations: u64,
+}
+
+impl RunNote {
+    pub(super) fn new(run: &Run, quantity: Measure, over: impl Fn(&[f64]) -> PerVariable<f64>) -> Self {
+        let Minimum { x, value, iterations, func_count, stop, .. } = &run.minimum;
+        let (start, at_start) = match run.rows.first() {
+            Some(row) => (over(&row.best), value_of(row.value)),
+            None => (PerVariable::default(), f64::NAN),
+        };
+        let (iterations, func_count) = (*iterations, *func_count);
+        Self {
+            start,
+            at_start: Amount::of(quantity, "_start", at_start),
+            found: over(x),
+            value: Amount::new(quantity, value_of(*value)),
+            iterations,
+            func_count,
+            stop: *stop,
+            descent: run.descent.map(|Descended { from, evaluations }| DescentNote {
+                from: Amount::of(quantity, "_before", value_of(from)),
+                evaluations,
+            }),
+        }
     }
 }

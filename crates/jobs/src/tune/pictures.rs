@@ -3,16 +3,14 @@
 use super::log::worth;
 use super::refine::Refined;
 use super::surf::Surf;
-use crate::Error;
-use crate::amount;
 use crate::summary::MadeBy;
+use crate::{Error, amount};
 use retune_optim::{Parameter, value_of};
 use retune_report::colour::BLUE;
-use retune_report::{Axis, Chart, Layer, Nodes, Place, Scale, Sheet, Stroke, Width, scale_for, svg};
+use retune_report::{Axis, Chart, Layer, Nodes, Place, Scale, Sheet, Stroke, scale_for, svg};
 use retune_store::Directory;
 use retune_study::{Search, Study};
 
-/// Draws all figures.
 pub(super) fn draw(
     study: &Study,
     search: &Search,
@@ -77,17 +75,13 @@ fn heat_map(surf: &Surf, [x, y]: [usize; 2], search: &Search, refined: &Refined,
     );
     let [over, and] = [x, y].map(|axis| surf.variables[axis]);
     svg(&Sheet {
-        title: format!("{} over {over} and {and}", quantity.name()),
         description: format!(
             "A map of {columns} by {lines} cells. {what} Marked: {}.",
             places.map(|place| place.label).join("; ")
         ),
-        width: Width::Column,
-        charts: vec![chart],
-        columns: 1,
-        stacked: false,
         legend,
         caption: vec![what, MadeBy::new(study).to_string()],
+        ..Sheet::of(format!("{} over {over} and {and}", quantity.name()), vec![chart])
     })
 }
 
@@ -111,7 +105,7 @@ fn convergence(search: &Search, refined: &Refined, study: &Study) -> String {
         let y = Axis::around(label, scale.unwrap_or_else(|| scale_for(&values)), values.iter().copied());
         let points = x.clone().zip(values).collect();
         let layers = vec![Layer::Steps { points, stroke: Stroke::solid(BLUE) }];
-        Chart { title: String::new(), x: Axis::exact("iteration", Scale::Linear, x), y, layers, height }
+        Chart::of(Axis::exact("iteration", Scale::Linear, x), y, layers, height)
     };
     let energies: Vec<f64> = rows.iter().map(|row| value_of(row.value)).collect();
     let ends = [energies.first(), energies.last()].map(|e| e.copied().unwrap_or(f64::NAN));
@@ -126,19 +120,15 @@ fn convergence(search: &Search, refined: &Refined, study: &Study) -> String {
     let name = quantity.name();
     let what = format!("Best vertex of the simplex, start {} of {}.", refined.winner + 1, refined.runs.len());
     svg(&Sheet {
-        title: "Convergence of the refinement".to_owned(),
         description: format!(
             "{name} and the tuned parameters against the iteration, one below the other. {what} {name} from {} to {} in {} iterations.",
             worth(ends[0], quantity),
             worth(ends[1], quantity),
             rows.last().map_or(0, |row| row.iteration)
         ),
-        width: Width::Column,
-        charts,
-        columns: 1,
         stacked: true,
-        legend: Vec::new(),
         caption: vec![what, MadeBy::new(study).to_string()],
+        ..Sheet::of("Convergence of the refinement", charts)
     })
 }
 

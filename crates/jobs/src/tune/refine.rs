@@ -1,11 +1,8 @@
 //! The fine stage: `fminsearch` from each start, with its log.
 
-use super::files::LOG;
-use super::files::STARTS;
-use super::log;
-use super::objective::{kept, searched};
+use super::log::{self, LOG, STARTS};
+use super::objective::{Task, kept, searched};
 use crate::Error;
-use crate::Observer;
 use crate::summary::MadeBy;
 use retune_model::Parameter;
 use retune_optim::{DesignObjective, Minimum, Row, minimize};
@@ -18,25 +15,20 @@ const ROUNDS: usize = 4;
 /// Values that differ by less than this share are the same.
 const SAME: f64 = 1e-6;
 
-/// All refinements of a study.
 pub struct Refined {
     /// The objective that was minimised; it keeps the failed evaluations.
     pub objective: DesignObjective,
     /// A run for each start, in the order of the starts.
     pub runs: Vec<Run>,
-    /// The number of the best run.
     pub winner: usize,
     /// Number of runs that begin at the starts; one more may begin at the best TMD.
     pub starts: usize,
 }
 
-/// One refinement.
 pub struct Run {
-    /// Its log.
     pub rows: Vec<Row>,
     /// Its result, at the end of its descent where that is better.
     pub minimum: Minimum,
-    /// The descent that led there.
     pub descent: Option<Descended>,
 }
 
@@ -45,7 +37,6 @@ pub struct Run {
 pub struct Descended {
     /// The value at its start.
     pub from: f64,
-    /// Evaluations that it made.
     pub evaluations: u64,
 }
 
@@ -57,20 +48,12 @@ impl Refined {
 }
 
 /// Refines every start; writes `fminsearch-starts.csv` of all where there are several.
-///
-/// # Errors
-/// A run cannot be started, or a file cannot be written.
-pub(super) fn refine(
-    study: &Study,
-    search: &Search,
-    starts: &[Vec<f64>],
-    results: &Directory,
-    watch: &dyn Observer,
-) -> Result<Refined, Error> {
+pub(super) fn refine(task: &Task, starts: &[Vec<f64>], results: &Directory) -> Result<Refined, Error> {
+    let Task { study, search, watch, .. } = *task;
     let mut all = results.file(STARTS)?;
     all.push_line(&format!("start,{}", log::csv_header(&search.variables, study.quantity())))?;
     let mut begun = 0;
-    let refined = each(study, search, starts, (results.journal(), "fminsearch"), |number, row, design| {
+    let refined = each(task, starts, |number, row, design| {
         if number > begun {
             begun = number;
             watch.log(&format!(
@@ -88,25 +71,20 @@ pub(super) fn refine(
     Ok(refined)
 }
 
-/// Refines every start. `tell` receives the number of the start, from 1, each row and its whole design; its error ends the run. The journal
-/// keeps values under the name of a stage.
-///
-/// # Errors
-/// A run cannot be started, that of `tell`, or the journal cannot be written.
+/// Refines every start. `tell` receives the number of the start, from 1, each row and its whole design; its error ends the run.
 pub(super) fn each(
-    study: &Study,
-    search: &Search,
+    task: &Task,
     starts: &[Vec<f64>],
-    (journal, stage): (&Journal, &str),
     mut tell: impl FnMut(usize, &Row, &[f64]) -> Result<(), Error>,
 ) -> Result<Refined, Error> {
+    let Task { study, search, journal, place, .. } = *task;
+    let stage = format!("{place}fminsearch");
     let mut objective = searched(study, search, &search.variables);
     let mut runs: Vec<Run> = Vec::new();
     let mut winner = 0;
     for (number, start) in starts.iter().enumerate() {
-        let run = run(&mut objective, search, start, (journal, stage), |row, design| {
-            tell(number + 1, row, design)
-        })?;
+        let tell = |row: &Row, design: &[f64]| tell(number + 1, row, design);
+        let run = run(&mut objective, search, start, (journal, &stage), tell)?;
         let best = runs.get(winner).map_or(f64::INFINITY, |best: &Run| best.minimum.value);
         if run.minimum.value < best {
             winner = number;
@@ -160,7 +138,6 @@ fn run(
     Ok(whole)
 }
 
-/// One simplex.
 fn simplex(
     objective: &DesignObjective,
     search: &Search,
@@ -185,9 +162,6 @@ fn simplex(
 }
 
 /// Writes `fminsearch.csv` and `fminsearch.txt` of the run that was chosen.
-///
-/// # Errors
-/// A file cannot be written.
 pub(super) fn write_winner(study: &Study, refined: &Refined, results: &Directory) -> Result<(), Error> {
     let varied = refined.objective.variables();
     let mut csv = results.file(LOG)?;

@@ -2,34 +2,29 @@
 //! and no script. Every number on it is computed or read from what the search has found; nothing is stated that was not.
 //!
 //! Read `findings` (what a page is made of), `answer` and `flags`, then the sections in their order on the page: `response`,
-//! `motion`, `sensitivity`, `place`, `course`, `origin`. `numbers` has how numbers are written, `retune_report::html` the elements.
+//! `motion`, `sensitivity`, `course`. `numbers` has how numbers are written, `retune_report::html` the elements.
 
 mod answer;
 mod course;
-mod curves;
 mod findings;
 mod flags;
 mod motion;
 mod numbers;
-mod origin;
-mod place;
 mod response;
 mod sensitivity;
 
+use crate::{Error, resolved};
+use answer::objective;
 pub(crate) use findings::Findings;
+use maud::html;
+use retune_report::document::{Block, Document, Section};
+use retune_report::html::{Table, link};
+use retune_store::{Directory, Identity, manifest};
+use retune_study::joined;
 
-use crate::Error;
-use crate::resolved::study_text;
-use retune_report::document::Document;
-use retune_store::Directory;
-
-/// The file.
 pub const FILE: &str = "report.html";
 
 /// Writes the page, after all other files of the results but those that say what made them.
-///
-/// # Errors
-/// The worst run cannot be followed, or the page cannot be written.
 pub(crate) fn write(findings: &Findings, results: &Directory) -> Result<(), Error> {
     let flags = flags::flags(findings);
     let compared = findings.compared();
@@ -44,12 +39,39 @@ pub(crate) fn write(findings: &Findings, results: &Directory) -> Result<(), Erro
     sections.extend([
         motion?,
         sensitivity::section(findings),
-        place::section(findings, &files, results),
+        course::place(findings, &files, results),
         course::section(findings, results),
-        origin::section(findings, &files, &study_text(findings.study)?),
+        origin(findings, &files, &resolved::study_text(findings.study)?),
     ]);
     let name = findings.study.name();
     let title = format!("{name}: {}", answer::title(findings));
     let page = Document { title, command: "retune optimize", opening: Vec::new(), sections };
     Ok(results.write(FILE, &page.html())?)
+}
+
+/// The section; `study` is the text of `study.json`.
+fn origin(findings: &Findings, files: &[String], study: &str) -> Section {
+    let solver = findings.study.solver;
+    let window = findings.study.window;
+    let Identity { study: sha, version, arithmetic } = Identity::of(study);
+    let mut table = Table::wrapping("Study, program and method", "what | value");
+    let mut row = |what: &str, value: String| table.row([what, &value]);
+    row("study", findings.study.name().to_owned());
+    row("SHA-256 of study.json", sha);
+    row("Retune", version);
+    row("arithmetic of the machine", arithmetic);
+    row("tuned parameters", joined(&findings.search.variables, ", "));
+    row("objective", format!("{}, {}", findings.quantity().name(), objective(findings)));
+    row("window", format!("{} s to {} s", window.t0.get(), window.end.get()));
+    row("method", format!("{}, relative tolerance {:e}", solver.method.name(), solver.rtol));
+    row("rule of the certificate", findings.optimum.certificate.rule.clone());
+    let mut names: Vec<&str> = files.iter().map(String::as_str).collect();
+    names.extend([resolved::ONE, manifest::NAME]);
+    names.sort_unstable();
+    names.dedup();
+    let body = html! {
+        (table.markup())
+        p { "Files beside this page: " @for (i, name) in names.iter().enumerate() { @if i > 0 { ", " } (link(name)) } "." }
+    };
+    ("origin", "What made this page", vec![Block::Elements(body)])
 }

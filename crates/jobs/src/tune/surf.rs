@@ -1,18 +1,15 @@
 //! The coarse stage: the objective on a grid.
 
-use super::files::GRID;
-use super::log::worth;
-use super::objective::{coarse, kept, searched};
+use super::log::{GRID, worth};
+use super::objective::{Task, coarse, kept, searched};
 use super::refine::columns;
 use crate::Error;
-use crate::Observer;
 use crate::rows::{Rows, compute};
 use retune_model::Measure;
 use retune_optim::{Counts, DesignObjective, Failures, Grid, Parameter, best_separated_above};
 use retune_report::table::{Cell, line};
 use retune_store::Directory;
-use retune_study::{Coarse, Search, Study};
-use retune_study::{counted, joined, short};
+use retune_study::{Coarse, Search, Study, counted, joined, short};
 use std::time::Instant;
 
 // A journal must hold every grid that a study may have.
@@ -22,12 +19,10 @@ const _: () = assert!(retune_study::MOST_GRID_POINTS <= retune_store::MOST_POINT
 pub struct Surf {
     /// The grid's parameters, in the order of its axes.
     pub variables: Vec<Parameter>,
-    /// The grid.
     pub grid: Grid,
     /// Its value at each point in the unit of the quantity, as exact as the study wants its grid; [`Coarse::up_to`] where it is above that,
     /// +∞ where it could not be computed.
     pub values: Vec<f64>,
-    /// The number of the best point.
     pub best: usize,
     /// Its value in the unit of the quantity, at the tolerance of refinements and with the peaks between samples.
     pub least: f64,
@@ -35,7 +30,6 @@ pub struct Surf {
     chosen: Vec<usize>,
     /// The points that could not be computed.
     pub failures: Failures,
-    /// The numbers of designs evaluated.
     pub counts: Counts,
 }
 
@@ -74,33 +68,19 @@ impl Rows for Designs {
 }
 
 /// Computes the grid of a study, if it has one, and writes `surf.csv`.
-///
-/// # Errors
-/// No point could be computed, or the file cannot be written.
-pub(super) fn surf(
-    study: &Study,
-    search: &Search,
-    results: &Directory,
-    watch: &dyn Observer,
-) -> Result<Option<Surf>, Error> {
+pub(super) fn surf(task: &Task, results: &Directory) -> Result<Option<Surf>, Error> {
+    let Task { study, search, journal, watch, .. } = *task;
     let Some((variables, grid)) = search.surf.clone() else { return Ok(None) };
     let (objective, most) = (coarse(study, search, &variables), study.coarse().up_to());
     let axes: Vec<String> = grid.axes().iter().map(|axis| axis.points().to_string()).collect();
-    watch.log(&format!(
-        "surf: {} = {} over {}{}{}",
-        axes.join(" x "),
-        counted(grid.len() as u64, "point"),
-        joined(&variables, " "),
-        study.coarse(),
-        study
-            .coarse()
-            .most
-            .map_or_else(String::new, |most| format!(", up to {}", worth(most, study.quantity())))
-    ))?;
+    let (axes, points, over) =
+        (axes.join(" x "), counted(grid.len() as u64, "point"), joined(&variables, " "));
+    let up_to = study.coarse().most.map(|most| format!(", up to {}", worth(most, study.quantity())));
+    let up_to = up_to.unwrap_or_default();
+    watch.log(&format!("surf: {axes} = {points} over {over}{}{up_to}", study.coarse()))?;
 
     let begun = Instant::now();
     let bar = watch.progress("surf", grid.len() as u64);
-    let journal = results.journal();
     let rows = Designs { objective, most, grid };
     let found = compute(&rows, 0..rows.len(), journal, &*bar);
     let Designs { objective, grid, .. } = rows;
@@ -126,7 +106,6 @@ pub(super) fn surf(
     Ok(Some(surf))
 }
 
-/// The coordinates of point number `i`.
 fn point(grid: &Grid, i: usize) -> Vec<f64> {
     let mut point = vec![0.0; grid.dim()];
     grid.point(i, &mut point);
@@ -156,7 +135,6 @@ fn write(
 }
 
 impl Surf {
-    /// The coordinates of point number `i`.
     pub fn point(&self, i: usize) -> Vec<f64> {
         point(&self.grid, i)
     }

@@ -1,11 +1,10 @@
 //! How far each parameter of a design may go, the others held, until its value is 0.1 % larger: what its digits are worth.
 
-use super::objective::{kept, searched};
+use super::objective::{Task, kept, searched};
 use rayon::prelude::*;
 use retune_model::Parameter;
 use retune_optim::Bounds;
-use retune_store::Journal;
-use retune_study::{Search, Study, rounded};
+use retune_study::rounded;
 use serde::Serialize;
 
 /// The share by which the value may grow.
@@ -31,7 +30,8 @@ pub(crate) struct Valley {
 }
 
 /// Measures it for each varied parameter of a design.
-pub(super) fn measure(study: &Study, search: &Search, design: &[f64], journal: &Journal) -> Vec<Valley> {
+pub(super) fn measure(task: &Task, design: &[f64]) -> Vec<Valley> {
+    let Task { study, search, journal, .. } = *task;
     let mut objective = searched(study, search, &search.variables);
     if objective.goal().follows_motions() && objective.learn(design).is_err() {
         return Vec::new();

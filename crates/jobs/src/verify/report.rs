@@ -1,8 +1,9 @@
 //! The report of a verification.
 
-use super::tally::Tally;
-use super::values;
+use crate::again::{Numbers, Row, Source, each_row};
 use crate::{Error, Observer};
+use rayon::prelude::*;
+use retune_study::counted;
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -19,13 +20,11 @@ struct Finding {
 
 /// A report to the observer; it collects what does not hold and what cannot be checked.
 pub struct Report<'a> {
-    /// The observer.
     pub watch: &'a dyn Observer,
     /// The largest relative difference that counts as held.
     within: f64,
     /// The prefix of a file's name in a message: its directory, where there are several.
     pub place: String,
-    /// What does not hold.
     pub problems: Vec<String>,
     unchecked: Vec<String>,
     findings: Vec<Finding>,
@@ -45,9 +44,6 @@ impl<'a> Report<'a> {
     }
 
     /// Reports what does not hold; `name` is the file, or empty.
-    ///
-    /// # Errors
-    /// The observer's, as of all reports.
     pub fn fail(&mut self, name: &str, words: &str) -> Result<(), Error> {
         let between = if name.is_empty() { "" } else { ", " };
         self.problems.push(format!("{}{name}{between}{words}", self.place));
@@ -56,10 +52,6 @@ impl<'a> Report<'a> {
         self.watch.result(&line)
     }
 
-    /// Reports what cannot be checked.
-    ///
-    /// # Errors
-    /// As [`Self::fail`].
     pub fn unchecked(&mut self, words: &str) -> Result<(), Error> {
         self.unchecked.push(format!("{}{words}", self.place));
         self.found("", None, words);
@@ -67,18 +59,46 @@ impl<'a> Report<'a> {
     }
 
     /// Compares a JSON file, or a part of it, with the same made again.
-    ///
-    /// # Errors
-    /// As [`Self::fail`].
     pub fn compare(&mut self, name: &str, what: &str, said: &Value, again: &Value) -> Result<(), Error> {
-        let tally = values::compare(said, again, self.within);
+        let tally = differences(said, again, self.within);
         self.tell(name, &format!("{what} made again"), &tally)
     }
 
+    /// Computes at most `most` rows again, evenly spread, and compares every number of them with the file.
+    pub fn check_rows(&mut self, path: &Path, name: &str, source: &Source, most: usize) -> Result<(), Error> {
+        let mut applicable = Vec::new();
+        let mut names = csv::StringRecord::new();
+        let mut count = 0_u64;
+        each_row(path, |number, row| {
+            names.clone_from(row.names);
+            count += 1;
+            if (source.applies)(row) {
+                applicable.push(number);
+            }
+        })?;
+        let kept = applicable.len().min(most);
+        let place = |i: usize| applicable[i * (applicable.len() - 1) / kept.saturating_sub(1).max(1)];
+        let wanted: Vec<usize> = (0..kept).map(place).collect();
+        let mut rows = Vec::with_capacity(kept);
+        each_row(path, |number, row| {
+            if wanted.get(rows.len()) == Some(&number) {
+                rows.push(row.fields.clone());
+            }
+        })?;
+        let again = |fields: &csv::StringRecord| (source.row)(Row { names: &names, fields });
+        let found: Vec<Option<Numbers>> = rows.par_iter().map(again).collect();
+        let mut tally = Tally::default();
+        for (fields, found) in rows.iter().zip(found) {
+            let row = Row { names: &names, fields };
+            match found {
+                Some(found) => found.iter().for_each(|(name, found)| tally.see(row.number(name), *found)),
+                None => tally.differs(f64::INFINITY), // no command writes such a row
+            }
+        }
+        self.tell(name, &format!("{kept} of {} run again", counted(count, "row")), &tally)
+    }
+
     /// Reports how many numbers of the file `name` differ; `what` says which were compared.
-    ///
-    /// # Errors
-    /// As [`Self::fail`].
     pub fn tell(&mut self, name: &str, what: &str, tally: &Tally) -> Result<(), Error> {
         let most = if tally.most.is_finite() {
             format!(
@@ -102,9 +122,6 @@ impl<'a> Report<'a> {
     }
 
     /// The result of all that was reported.
-    ///
-    /// # Errors
-    /// [`Error::NotHeld`], [`Error::NotChecked`], or the observer's.
     pub fn end(self, path: &Path) -> Result<(), Error> {
         let Self { watch, within, problems, unchecked, findings, .. } = self;
         let unchecked = unchecked.join("; ");
@@ -129,5 +146,86 @@ impl<'a> Report<'a> {
         let and = if unchecked.is_empty() { "" } else { "; cannot be checked: " };
         let problem = format!("does not hold: {}{and}{unchecked}", problems.join("; "));
         Err(Error::NotHeld { path: path.to_owned(), problem })
+    }
+}
+
+/// The differences between the numbers of a file and those computed again.
+#[derive(Default)]
+pub struct Tally {
+    pub differ: usize,
+    pub most: f64,
+}
+
+impl Tally {
+    /// Compares two numbers; two that are not finite are the same: no value.
+    pub fn see(&mut self, said: f64, found: f64) {
+        let none = |value: f64| !value.is_finite();
+        if said.to_bits() != found.to_bits() && !(none(said) && none(found)) {
+            let difference = (said - found).abs() / said.abs().max(found.abs());
+            self.differs(if difference.is_finite() { difference } else { f64::INFINITY });
+        }
+    }
+
+    pub fn differs(&mut self, by: f64) {
+        self.differ += 1;
+        self.most = self.most.max(by);
+    }
+}
+
+/// Compares every field of `again`: numbers by their relative difference, anything else must be equal. Fields that `again` does not
+/// have, and the version of Retune, are ignored; so are texts made of numbers where these may differ by a share `within`.
+fn differences(said: &Value, again: &Value, within: f64) -> Tally {
+    let mut tally = Tally::default();
+    visit(said, again, within, &mut tally);
+    tally
+}
+
+fn visit(said: &Value, again: &Value, within: f64, tally: &mut Tally) {
+    match (said, again) {
+        (_, Value::Object(fields)) => {
+            let made_of_numbers = |name: &str| within > 0.0 && ["words", "at"].contains(&name);
+            for (name, again) in fields.iter().filter(|(name, _)| *name != "retune" && !made_of_numbers(name))
+            {
+                visit(&said[name.as_str()], again, within, tally);
+            }
+        }
+        (Value::Array(said), Value::Array(again)) if said.len() == again.len() => {
+            said.iter().zip(again).for_each(|(said, again)| visit(said, again, within, tally));
+        }
+        // A number that is not finite is null.
+        (Value::Number(_) | Value::Null, Value::Number(_) | Value::Null) => {
+            let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
+            tally.see(number(said), number(again));
+        }
+        _ if said == again => {}
+        _ => tally.differs(f64::INFINITY),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn contract_every_leaf_is_compared() {
+        let again = json!({ "a": [1.0, null], "retune": "2", "b": { "verdict": "robust", "words": "so" } });
+        let look = |said: Value, within: f64| {
+            let Tally { differ, most } = differences(&said, &again, within);
+            (differ, most)
+        };
+        let with = |path: &str, value: Value| {
+            let mut said = again.clone();
+            *said.pointer_mut(path).expect(path) = value;
+            said
+        };
+        assert_eq!(look(with("/retune", json!("1")), 0.0), (0, 0.0));
+        assert_eq!(look(with("/a/0", json!(0.5)), 0.0), (1, 0.5));
+        assert_eq!(look(with("/a/1", json!(0.5)), 0.0), (1, f64::INFINITY));
+        assert_eq!(look(with("/a", json!([1.0])), 0.0), (1, f64::INFINITY));
+        assert_eq!(look(with("/b/verdict", json!("sensitive")), 0.1), (1, f64::INFINITY));
+        assert_eq!(look(with("/b/words", json!("other")), 0.0), (1, f64::INFINITY));
+        assert_eq!(look(with("/b/words", json!("other")), 0.1), (0, 0.0));
+        assert_eq!(look(with("/b", json!("gone")), 0.0), (2, f64::INFINITY));
     }
 }

@@ -1,6 +1,6 @@
 //! `design`: from a structure to two dampers, on structures of very different size.
 
-use retune_jobs::design::{Requirements, Typed, Wishes, design};
+use retune_jobs::design::{Requirements, Specification, Typed, design};
 use retune_jobs::tune::optimize;
 use retune_jobs::{Error, Request, Silent};
 use retune_model::{Coupled, Design, Measure, NonNegative, Parameter};
@@ -14,8 +14,8 @@ use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-fn asked(wishes: Value) -> Wishes {
-    serde_json::from_value(wishes).expect("wishes")
+fn asked(specification: Value) -> Specification {
+    serde_json::from_value(specification).expect("specification")
 }
 
 /// A structure of 500 kg, a machine foundation of 5 t at 12 Hz, a bench model of 2 kg at 25 Hz.
@@ -26,21 +26,24 @@ fn structures() -> [Requirements; 3] {
         let force = 1e-5 * m1 * (TAU * hertz).powi(2);
         json!({ "m1": m1, "f1": format!("{hertz} Hz"), "zeta": "1 %", "force": force, "band": "0.8 .. 1.25", "mass": share })
     };
-    [example, at(5000.0, 12.0, "5 %"), at(2.0, 25.0, "10%")].map(|mut wishes| {
-        if wishes["band"] == "0.8 .. 1.25" {
-            let hertz: f64 =
-                wishes["f1"].as_str().and_then(|text| text.strip_suffix(" Hz")?.parse().ok()).expect("Hz");
-            wishes["band"] = json!(format!("{} .. {} Hz", 0.8 * hertz, 1.25 * hertz));
+    [example, at(5000.0, 12.0, "5 %"), at(2.0, 25.0, "10%")].map(|mut specification| {
+        if specification["band"] == "0.8 .. 1.25" {
+            let hertz: f64 = specification["f1"]
+                .as_str()
+                .and_then(|text| text.strip_suffix(" Hz")?.parse().ok())
+                .expect("Hz");
+            specification["band"] = json!(format!("{} .. {} Hz", 0.8 * hertz, 1.25 * hertz));
         }
-        good(asked(wishes).requirements())
+        good(asked(specification).requirements())
     })
 }
 
 /// The answer with TMDs alone.
-fn with_tmd(wishes: Value) -> Value {
+fn with_tmd(specification: Value) -> Value {
     let desk = Desk::new();
-    let requirements =
-        good(Wishes { damper: Some(Typed::from("tmd".to_owned())), ..asked(wishes) }.requirements());
+    let requirements = good(
+        Specification { damper: Some(Typed::from("tmd".to_owned())), ..asked(specification) }.requirements(),
+    );
     let request = Request { out: Some(desk.path("out")), ..Request::new(&desk.path("out")) };
     drop(good(design(&requirements, &request, &Silent)));
     desk.read_json("out/design.json")
@@ -69,7 +72,7 @@ fn reference_the_tmd_of_a_design_is_the_optimum_of_the_closed_form() {
         let options = Options { scaling: Scaling::Start, tol_x: 1e-9, tol_fun: 1e-15, ..Options::default() };
         let own = minimize(worst, &start, options, |_| ControlFlow::Continue(())).expect("an optimum");
         let Requirements { m1, k1, c1, band, mass, .. } = requirements.clone();
-        let retune_jobs::design::Driving::Force(force) = requirements.source else { panic!("a force") };
+        let (_, force) = requirements.source;
         let found = with_tmd(json!({ "m1": m1, "k1": k1, "c1": c1, "P": force, "band": band, "mass": mass }));
         let e1_max = largest(&found, 1, "E1max");
         assert!((e1_max / own.value - 1.0).abs() < 1e-8, "{e1_max} {} {requirements:?}", own.value);
@@ -119,9 +122,12 @@ fn exact_the_force_on_an_accelerated_ground_is_made_small_or_limited() {
         "m1": "120 t", "f1": "0.3 Hz", "zeta": "1 %", "base_acceleration": "0.02 g", "band": "0.25..0.35Hz", "mass": "2%"
     });
     let with = |more: Value| {
-        let mut wishes = base.clone();
-        wishes.as_object_mut().expect("an object").extend(more.as_object().cloned().expect("an object"));
-        with_tmd(wishes)
+        let mut specification = base.clone();
+        specification
+            .as_object_mut()
+            .expect("an object")
+            .extend(more.as_object().cloned().expect("an object"));
+        with_tmd(specification)
     };
     let least = with(json!({ "goal": "ground-force" }));
     let force = largest(&least, 1, "ground_force");
@@ -199,10 +205,10 @@ fn contract_the_examples_are_requirements_and_options_replace_their_fields() {
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../studies/examples");
     let mut count = 0;
     for entry in std::fs::read_dir(examples).expect("the examples") {
-        let wishes = good(Wishes::read(&entry.expect("an entry").path()));
-        let own = good(wishes.requirements());
+        let specification = good(Specification::read(&entry.expect("an entry").path()));
+        let own = good(specification.requirements());
         let other = asked(json!({ "k1": 2.0 * own.k1, "base": "1 mm", "stroke": "7 mm" }));
-        let other = good(wishes.with(other).requirements());
+        let other = good(specification.with(other).requirements());
         assert_eq!((other.m1, other.k1, other.mass), (own.m1, 2.0 * own.k1, own.mass));
         assert_eq!(json!(other)["base"], 0.001);
         assert_eq!(json!(other)["limits"]["stroke"], 0.007);
@@ -237,16 +243,19 @@ fn contract_slips_are_refused_with_what_to_give() {
         (json!({ "damper": "nes" }), "--damper: \"nes\" is none: give tmd, ssvi or both"),
         (json!({ "wall": "R=20mm" }), "--wall: E is missing: for instance R=20mm,E=5MPa"),
     ] {
-        let mut wishes = good_ones.clone();
-        wishes.as_object_mut().expect("an object").extend(change.as_object().cloned().expect("an object"));
-        match refused(asked(wishes.clone()).requirements()) {
+        let mut specification = good_ones.clone();
+        specification
+            .as_object_mut()
+            .expect("an object")
+            .extend(change.as_object().cloned().expect("an object"));
+        match refused(asked(specification.clone()).requirements()) {
             error @ Error::Requirement { .. } => {
                 let sentence = error.to_string();
                 assert!(sentence.starts_with(words), "{sentence}");
             }
             other => panic!("{other}"),
         }
-        let sentence = refused(asked(wishes).within("a.json").requirements()).to_string();
+        let sentence = refused(asked(specification).within("a.json").requirements()).to_string();
         assert!(sentence.starts_with("a.json: ") || words.contains("missing: "), "{sentence}");
     }
 }

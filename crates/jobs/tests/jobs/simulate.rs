@@ -146,14 +146,14 @@ fn read_file(path: &Path) -> Result<Study, Error> {
 #[test]
 fn contract_results_are_read_as_the_study_with_the_design_that_was_found() {
     let desk = Desk::with(&tiny());
-    let found = search(&desk, "study.json", "out").found();
+    let found = search(&desk, "study.json", "out");
     let own = good(read_file(&desk.path("study.json")));
     let scene = own.scene_at(&found.damper.design).expect("a damper");
     for path in ["out", "out/optimum.json"] {
         let study = good(read_file(&desk.path(path)));
         assert_eq!((study.scene, study.name()), (scene, "study"), "{path}");
         let run = good(simulate(&study, None));
-        assert_eq!(json!(run)["E1max"].as_f64(), Some(found.e1_max), "{path}");
+        assert_eq!(json!(run)["E1max"].as_f64(), Some(found.value()), "{path}");
     }
     // Of several searches one has to be named.
     let row = json!({ "damper": "NES", "study": "study.json", "paper": { "k2": 215, "c2": 232, "D": 0.06, "C": 0.36 } });

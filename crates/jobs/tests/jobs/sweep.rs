@@ -111,13 +111,13 @@ fn contract_a_sweep_that_is_cut_off_resumes_and_ends_in_the_same_bytes() {
 #[test]
 fn contract_results_stand_for_the_design_that_was_found() {
     let desk = desk();
-    let found = search(&desk, "study.json", "tuned").found();
+    let found = search(&desk, "study.json", "tuned");
     let over = Parameter::K2;
     let k2 = found.damper.design.get(over);
     let options =
         Options { from: k2.to_string(), to: (2.0 * k2).to_string(), points: 2, ..Options::over(over) };
     good(sweep(&request(&desk, "tuned", "out"), &options, &Points::All, &Silent));
-    assert_eq!(desk.rows("out/sweep.csv")[1][1].parse(), Ok(found.e1_max));
+    assert_eq!(desk.rows("out/sweep.csv")[1][1].parse(), Ok(found.value()));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::running::Running;
 use clap::Args;
-use retune_jobs::design::{Typed, Wishes};
+use retune_jobs::design::{Specification, Typed};
 use std::path::PathBuf;
 
 /// What is typed after most options: a number in the SI unit, or one with its unit.
@@ -86,13 +86,13 @@ Examples:
 
 impl Design {
     /// What is asked.
-    pub fn wishes(&self) -> Wishes {
+    pub fn specification(&self) -> Specification {
         let band = if self.band.is_empty() { None } else { Some(self.band.join(" .. ").into()) };
         let Self {
             m1, k1, f1, c1, zeta, force, imbalance, base, base_acceleration, mass, goal, limit, ..
         } = self;
         let Self { stroke, k2_max, k1_error, damper, wall, .. } = self;
-        Wishes {
+        Specification {
             m1: m1.clone(),
             k1: k1.clone(),
             f1: f1.clone(),
@@ -111,7 +111,7 @@ impl Design {
             k1_error: k1_error.clone(),
             damper: damper.clone(),
             wall: wall.clone(),
-            ..Wishes::default()
+            ..Specification::default()
         }
     }
 }

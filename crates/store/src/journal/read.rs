@@ -1,11 +1,10 @@
 //! Reading a journal, damaged or not: complete records are kept, damaged ones counted.
 
-use super::record::{Key, bits, grid_value};
+use super::record::{Key, Seal, bits, grid_value};
 use crate::error::Error;
 use crate::identity::Identity;
 use crate::pending::Pending;
 use crate::plain;
-use crate::seal::Seal;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::io::{BufRead, BufReader, ErrorKind};
 use std::path::Path;
@@ -50,7 +49,7 @@ impl Damage {
 
 /// The state of a journal's file.
 #[derive(Debug)]
-pub enum Found {
+pub enum State {
     /// Nothing, not even a first line.
     Nothing,
     /// A file that cannot be attributed to a work, and why.
@@ -60,17 +59,14 @@ pub enum Found {
 }
 
 /// Reads a journal. Where its first line is damaged, its records tell whether it is of the work `ours`.
-///
-/// # Errors
-/// It cannot be read.
-pub fn read(path: &Path, ours: &Identity) -> std::io::Result<Found> {
+pub fn read(path: &Path, ours: &Identity) -> std::io::Result<State> {
     let mut lines = BufReader::new(match plain::open(path) {
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Found::Nothing),
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(State::Nothing),
         other => other?,
     });
     let mut line = Vec::new();
     if !next(&mut lines, &mut line)? {
-        return Ok(Found::Nothing);
+        return Ok(State::Nothing);
     }
     let head = head(&line);
     let of = head.clone().unwrap_or_else(|| ours.clone());
@@ -87,24 +83,21 @@ pub fn read(path: &Path, ours: &Identity) -> std::io::Result<Found> {
         }
         match self::head(&line) {
             Some(other) if damage.head || other != of => {
-                return Ok(Found::Unclear("it holds the work of two studies, one after the other"));
+                return Ok(State::Unclear("it holds the work of two studies, one after the other"));
             }
             Some(_) => {}
             None => damage.lines += 1,
         }
     }
     if damage.head && known.lines == 0 && known.parts.is_empty() {
-        return Ok(Found::Unclear(
+        return Ok(State::Unclear(
             "its first line, which says whose work it is, is damaged or of another version, and no record in it is of this study",
         ));
     }
-    Ok(Found::Work(of, Box::new(known), damage))
+    Ok(State::Work(of, Box::new(known), damage))
 }
 
 /// Replaces a damaged journal: a first line, and every complete record. The old file stays until the new one is complete.
-///
-/// # Errors
-/// It cannot be read or written.
 pub fn mend(path: &Path, identity: &Identity) -> Result<(), Error> {
     let refuse = |source| Error::Output { path: path.to_owned(), source };
     let mut lines = BufReader::new(plain::open(path).map_err(refuse)?);
@@ -125,7 +118,6 @@ pub fn first_line(identity: &Identity) -> String {
     Seal::plain().close(&format!("{TITLE} {}", identity.words()))
 }
 
-/// Reads [`first_line`].
 fn head(line: &[u8]) -> Option<Identity> {
     Identity::parse(Seal::plain().open(line)?.strip_prefix(TITLE)?.strip_prefix(' ')?)
 }

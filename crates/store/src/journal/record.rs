@@ -1,5 +1,6 @@
 //! The records of a journal: their keys, and the text of a value of the grid.
 
+use crate::identity::{Identity, hexadecimal};
 use sha2::{Digest, Sha256};
 
 /// Half of a SHA-256: the stage, the design and the cutoff.
@@ -31,4 +32,36 @@ pub fn key(stage: &str, design: &[f64], cutoff: f64) -> Key {
     let mut key = Key::default();
     key.copy_from_slice(&hash.finalize()[..16]);
     key
+}
+
+/// The state from which the checksums of a work's lines are computed.
+#[derive(Clone, Debug)]
+pub struct Seal(Sha256);
+
+impl Seal {
+    /// For lines that name their work themselves, and for files that are checked as a whole.
+    pub fn plain() -> Self {
+        Self(Sha256::new())
+    }
+
+    /// For the lines of a work.
+    pub fn of(identity: &Identity) -> Self {
+        Self(Sha256::new_with_prefix(identity.words()))
+    }
+
+    /// `text` as a line, with its end.
+    pub fn close(&self, text: &str) -> String {
+        format!("{text} {}\n", self.checksum(text))
+    }
+
+    /// The text of a line; none if it is damaged or of another work.
+    pub fn open<'a>(&self, line: &'a [u8]) -> Option<&'a str> {
+        let line = std::str::from_utf8(line.strip_suffix(b"\n")?).ok()?;
+        let (text, check) = line.rsplit_once(' ')?;
+        (check == self.checksum(text)).then_some(text)
+    }
+
+    fn checksum(&self, text: &str) -> String {
+        hexadecimal(&self.0.clone().chain_update(text).finalize()[..4])
+    }
 }

@@ -16,15 +16,15 @@ impl Desk {
     fn try_open(&self) -> Option<(Journal, Damage)> {
         let identity = Identity::of("study");
         let journal = match read(&self.path(), &identity).expect("a journal") {
-            Found::Work(of, known, damage) => {
+            State::Work(of, known, damage) => {
                 assert_eq!(of, identity);
                 (Journal::resume(&self.path(), &identity, *known, damage), damage)
             }
-            Found::Nothing => {
+            State::Nothing => {
                 let _ = std::fs::remove_file(self.path()); // an empty one
                 (Journal::begin(&self.path(), &identity), Damage::default())
             }
-            Found::Unclear(_) => return None,
+            State::Unclear(_) => return None,
         };
         Some((journal.0.expect("a journal"), journal.1))
     }
@@ -134,7 +134,7 @@ fn contract_any_flipped_bit_is_told_and_costs_no_more_than_its_record() {
             flipped[place] ^= 1 << bit;
             desk.put(&flipped);
             let found = read(&desk.path(), &Identity::of("study")).expect("a journal");
-            let Found::Work(_, known, damage) = found else { panic!("byte {place}, bit {bit}: {found:?}") };
+            let State::Work(_, known, damage) = found else { panic!("byte {place}, bit {bit}: {found:?}") };
             let most = if whole[place] == b'\n' { 2 } else { u64::from(place > head) };
             assert!(!damage.is_none() && known.lines + most >= 12, "byte {place}, bit {bit}");
             assert_eq!(damage.head, place <= head, "byte {place}, bit {bit}");
@@ -195,7 +195,7 @@ fn contract_the_work_of_another_study_is_never_believed() {
     assert!(desk.try_open().is_none(), "one after the other");
     desk.put([&records[..], &whole].concat());
     let found = read(&desk.path(), &Identity::of("study")).expect("a journal");
-    assert!(matches!(found, Found::Unclear(_)), "{found:?}");
+    assert!(matches!(found, State::Unclear(_)), "{found:?}");
     desk.put([&b"#"[..], &records[1..]].concat());
     assert!(desk.try_open().is_none(), "a damaged first line");
     desk.put([&whole[..], &records[head..]].concat());
@@ -246,12 +246,12 @@ fn contract_a_file_that_is_no_journal_is_left_alone() {
     let desk = Desk::new();
     let identity = Identity::of("study");
     let found = || read(&desk.path(), &identity).expect("read");
-    assert!(matches!(found(), Found::Nothing), "no file");
+    assert!(matches!(found(), State::Nothing), "no file");
     desk.put("");
-    assert!(matches!(found(), Found::Nothing), "an empty file");
+    assert!(matches!(found(), State::Nothing), "an empty file");
     for text in [&b"something else\n"[..], b"x", b"\n", &[0; 4096], b"retune-journal-1 study=1\n"] {
         desk.put(text);
-        assert!(matches!(found(), Found::Unclear(_)), "{text:?}");
+        assert!(matches!(found(), State::Unclear(_)), "{text:?}");
         assert_eq!(desk.bytes(), text);
     }
 }

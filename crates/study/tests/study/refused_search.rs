@@ -146,7 +146,10 @@ fn contract_contradictions_are_typed() {
     assert_eq!(rule("/window/t0", json!(4)), Rule::EmptyWindow { t0: 4.0, end: 4.0 });
     assert_eq!(rule("/scene/damper", Value::Null), Rule::NoDamper);
     assert_eq!(rule("/optimize/vary", json!([])), Rule::NothingVaried);
-    assert_eq!(rule("/optimize/refine/starts", json!(0)), Rule::NoStarts);
+    assert_eq!(
+        rule("/optimize/refine/starts", json!(0)),
+        Rule::not_allowed("optimize.refine.starts", 0, "a whole number above 0")
+    );
 }
 
 #[test]

@@ -12,7 +12,6 @@ pub struct Kept {
     /// Of each limit that is broken near the design (by a neighbour, with 1 % of one parameter, or on the finer band), the place
     /// that breaks it most.
     broken_near: Vec<Excess>,
-    /// Number of neighbours that break a limit.
     neighbours: usize,
 }
 
@@ -30,11 +29,8 @@ pub struct Excess {
 
 /// The largest values at a design near the certified one.
 pub struct Near {
-    /// The place in words.
     pub at: String,
-    /// Whether it is one of the neighbours.
     pub neighbour: bool,
-    /// The largest values there.
     pub reached: PerLimit<f64>,
 }
 
@@ -73,7 +69,6 @@ impl Kept {
         })
     }
 
-    /// Number of neighbours that break a limit.
     pub fn neighbours(&self) -> usize {
         self.neighbours
     }

@@ -1,8 +1,7 @@
 //! The measurements that a certificate is made from.
 
 use super::limits::Kept;
-use super::margin::Margin;
-use super::motions::Motions;
+use super::motions::{Margin, Motions};
 use crate::amount::Amount;
 use retune_dynamics::{Kind, Regime};
 use retune_solver::Method;
@@ -13,7 +12,6 @@ pub const FINER: usize = 4;
 /// The quantiles of the neighbours between which their width is measured.
 const WITHIN: [f64; 2] = [0.05, 0.95];
 
-/// The run with the largest value.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct WorstRun {
     #[serde(flatten)]
@@ -33,7 +31,6 @@ pub struct Run {
     pub value: Amount,
 }
 
-/// The motion of the worst run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Motion {
     pub regime: String,
@@ -75,20 +72,29 @@ pub struct Neighbourhood {
 }
 
 /// All measurements of a design that a certificate is made from.
+#[derive(Clone, Debug, Serialize)]
 pub struct Measured {
+    /// The limits at the design and near it, where the study has any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub limits: Option<Kept>,
+    /// The run with the largest value that the value is made of.
     pub worst_run: WorstRun,
     pub convergence: Vec<Run>,
+    /// The objective with four times the samples of its bands, where it has bands that are sampled.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub finer: Option<f64>,
     pub motion: Motion,
+    /// Every motion that was found, from rest and from other starts, where the damper can strike and the force has a period.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub motions: Option<Motions>,
+    /// How far the force and the parameters may be off before another motion has 5 % more.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub margin: Option<Margin>,
     pub sensitivity: Vec<Sensitivity>,
     pub neighbourhood: Neighbourhood,
-    pub limits: Option<Kept>,
 }
 
 impl Run {
-    /// Whether the method could finish the run.
     pub fn is_finished(&self) -> bool {
         self.value.value.is_finite()
     }

@@ -38,7 +38,6 @@ pub struct Motions {
     pub irregular: Vec<Irregular>,
 }
 
-/// The motion with the largest value.
 #[derive(Clone, Debug, Serialize)]
 pub struct Another {
     #[serde(flatten)]
@@ -87,7 +86,6 @@ impl Another {
         }
     }
 
-    /// What it is and where.
     pub fn words(&self) -> String {
         let Self { value, omega, periods, impacts, .. } = self;
         let kind = periods.map_or_else(|| "irregular".to_owned(), |n| periodic(n, impacts));
@@ -101,7 +99,6 @@ impl Another {
         format!("`retune simulate STUDY --set omega={omega} --set k1={k1} --from {state}` runs it again")
     }
 
-    /// How it is reached.
     pub fn reached(&self) -> String {
         if self.from_rest {
             "runs from rest lead there".to_owned()
@@ -150,17 +147,14 @@ impl Motions {
         }
     }
 
-    /// What the starts may miss.
     pub fn missed(&self) -> String {
         if self.from == self.to {
             return format!("{} starts at one frequency", self.starts);
         }
+        let ([share, missed], width) = ([SHARE, MISSED].map(|of| 100.0 * of), rounded(self.width_missed, 2));
+        let starts = self.starts;
         format!(
-            "a motion on which {} % of the starts end is missed by {} starts with a probability below {} % if it is wider than {} rad/s",
-            100.0 * SHARE,
-            self.starts,
-            100.0 * MISSED,
-            rounded(self.width_missed, 2)
+            "a motion on which {share} % of the starts end is missed by {starts} starts with a probability below {missed} % if it is wider than {width} rad/s"
         )
     }
 
@@ -168,4 +162,78 @@ impl Motions {
     pub fn ratio(&self) -> f64 {
         self.largest.as_ref().map_or(0.0, |one| one.value.value / self.from_rest)
     }
+}
+
+/// A motion with 5 % more than runs from rest, where it begins.
+#[derive(Clone, Debug, Serialize)]
+pub struct Other {
+    #[serde(flatten)]
+    pub value: Amount,
+    pub omega: f64,
+    pub k1: f64,
+    /// `[x1, v1, x2, v2]` of it at a crest of the force.
+    pub state: [f64; 4],
+    /// Periods of the force after which it repeats; null where it does not.
+    pub periods: Option<usize>,
+    /// The walls that it strikes in turn: S the structure, O the obstacle.
+    pub impacts: String,
+}
+
+/// The margins of a design. Forces are multiples of its own.
+#[derive(Clone, Debug, Serialize)]
+pub struct Margin {
+    /// The least margin of the force of a robust design.
+    pub needed_force: f64,
+    /// The forces at which motions were looked for, beside its own.
+    pub forces: Vec<f64>,
+    /// The force up to which none was found.
+    pub safe_to: f64,
+    /// The motion that begins there; null where none was found up to the largest of the forces.
+    pub other: Option<Other>,
+    /// The least relative error of a parameter of a robust design, %.
+    pub needed_percent: f64,
+    /// The parameters whose errors of that size bring such a motion, of those that were found at more force.
+    pub parameters: Vec<ParameterError>,
+}
+
+/// The least error of a parameter that brings another motion.
+#[derive(Clone, Debug, Serialize)]
+pub struct ParameterError {
+    pub parameter: &'static str,
+    pub percent: f64,
+    #[serde(flatten)]
+    pub other: Other,
+}
+
+impl Other {
+    pub fn words(&self) -> String {
+        let Self { value, omega, k1, periods, impacts, .. } = self;
+        let kind = periods.map_or_else(|| "irregular".to_owned(), |n| periodic(n, impacts));
+        let (omega, k1) = (short(*omega), short(*k1));
+        format!("{} at omega = {omega} rad/s, k1 = {k1} N/m ({kind})", measured(value.value, value.quantity))
+    }
+}
+
+impl Margin {
+    /// Whether it is less than a robust design has.
+    pub fn is_short(&self) -> bool {
+        self.safe_to < self.needed_force || !self.parameters.is_empty()
+    }
+
+    pub fn words(&self) -> String {
+        let safe = percent_down(self.safe_to);
+        let Some(other) = &self.other else {
+            return format!("safe to {safe} P, where none with 5 % more is found");
+        };
+        let mut words = format!("safe to {safe} P; from there on a motion has {}", other.words());
+        for ParameterError { parameter, percent, other } in &self.parameters {
+            words += &format!("; {parameter} off by {} % brings {}", rounded(*percent, 2), other.words());
+        }
+        words
+    }
+}
+
+/// A multiple to four decimals, rounded down: less is safe, too.
+fn percent_down(multiple: f64) -> String {
+    short((1e4 * multiple).floor() / 1e4)
 }

@@ -1,28 +1,36 @@
 //! A certificate as text.
 
 use super::verdict::{NONE, between, or_none};
-use super::{Certificate, FINER, Motion, Neighbourhood, Run, Sensitivity, Short, WorstRun};
+use super::{Certificate, FINER, Measured, Motion, Neighbourhood, Run, Sensitivity, WorstRun};
 use crate::amount::Amount;
 use retune_study::short;
 
-impl std::fmt::Display for Short {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { words, contacts, compared, regime, exponent, .. } = self;
-        write!(f, "certificate: {words}\n  ")?;
-        if let Some(contacts) = contacts {
-            write!(f, "Contacts: {contacts}\n  ")?;
-        }
-        write!(f, "{compared}, ")?;
-        write!(f, "{regime}, largest Lyapunov exponent {exponent:.3} /s at the worst run")
+impl Certificate {
+    /// The verdict with the error bar; on a line of its own what other walls do.
+    pub(crate) fn verdict_words(&self) -> String {
+        let contacts = self.walls.iter().map(|walls| format!("\nContacts: {}", walls.words()));
+        format!("{} ({}){}", self.reason(), self.compared(), contacts.collect::<String>())
+    }
+
+    /// The lines of its short form.
+    pub(crate) fn lines(&self) -> Vec<String> {
+        let Motion { regime, exponent, .. } = &self.measured.motion;
+        let contacts = self.walls.iter().map(|walls| format!("Contacts: {}", walls.words()));
+        let last = format!(
+            "{}, {regime}, largest Lyapunov exponent {exponent:.3} /s at the worst run",
+            self.compared()
+        );
+        [format!("certificate: {}", self.reason())].into_iter().chain(contacts).chain([last]).collect()
     }
 }
 
 impl std::fmt::Display for Certificate {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { made_by, design, value, worst_run, motion, neighbourhood, .. } = self;
+        let Self { made_by, design, value, judged, measured, .. } = self;
+        let Measured { worst_run, motion, neighbourhood, .. } = measured;
         writeln!(f, "{made_by}")?;
         writeln!(f, "design        {}", design.words(|_| 6))?;
-        let predictable = if self.predictable { "predictable" } else { "not predictable" };
+        let predictable = if judged.predictable { "predictable" } else { "not predictable" };
         let Amount { quantity, value, .. } = *value;
         let (name, unit) = (quantity.name(), quantity.unit());
         let said = |value: f64| or_none(value, quantity);
@@ -32,28 +40,24 @@ impl std::fmt::Display for Certificate {
         let omega = if *omega > 0.0 { format!("omega = {} rad/s, ", short(*omega)) } else { String::new() };
         let k1 = short(*k1);
         writeln!(f, "worst run     {} at {omega}k1 = {k1} N/m{phase}", said(value.value))?;
-        for Run { method, rtol, value } in &self.convergence {
+        for Run { method, rtol, value } in &measured.convergence {
             let (method, value) = (format!("{} {rtol:e}", method.name()), value.value);
             let digits = if value.is_finite() { format!("{value:.10} {unit}") } else { NONE.to_owned() };
             writeln!(f, "  {method:<14}{digits}")?;
         }
-        if let Some(finer) = self.finer {
-            writeln!(
-                f,
-                "samples       the value is a lower bound; {} with {FINER} times the samples",
-                said(finer)
-            )?;
+        if let Some(finer) = measured.finer.map(said) {
+            writeln!(f, "samples       the value is a lower bound; {finer} with {FINER} times the samples")?;
         }
         let Motion { regime, exponent, exponent_error, contacts_per_period: [a, b], confidence, .. } = motion;
         writeln!(f, "motion        {regime} (probability {confidence:.2})")?;
-        if let Some(motions) = &self.motions {
+        if let Some(motions) = &measured.motions {
             writeln!(f, "motions       {}", motions.words())?;
             writeln!(f, "              {}", motions.missed())?;
             if let Some(other) = motions.largest.as_ref().filter(|other| !other.from_rest) {
                 writeln!(f, "              {}", other.again(motions.k1))?;
             }
         }
-        if let Some(margin) = &self.margin {
+        if let Some(margin) = &measured.margin {
             writeln!(f, "margin        {}", margin.words())?;
         }
         writeln!(f, "exponent      {exponent:.4} ± {exponent_error:.4} /s, the largest Lyapunov exponent")?;
@@ -62,7 +66,8 @@ impl std::fmt::Display for Certificate {
             "contacts      {a:.2} on the structure, {b:.2} on the obstacle in a period of the force"
         )?;
         writeln!(f, "parameter     {:<25}worst within 1 %", format!("slope, {unit} for 1 % more"))?;
-        for Sensitivity { parameter, slope_per_percent, worst, worst_at_percent, .. } in &self.sensitivity {
+        for Sensitivity { parameter, slope_per_percent, worst, worst_at_percent, .. } in &measured.sensitivity
+        {
             let known = slope_per_percent.is_finite();
             let slope = if known { format!("{slope_per_percent:+.4}") } else { NONE.to_owned() };
             writeln!(f, "  {parameter:<12}{slope:<25}{} at {worst_at_percent:+} %", said(*worst))?;
@@ -73,12 +78,12 @@ impl std::fmt::Display for Certificate {
             f,
             "neighbours    {members} within {errors} %: 90 % of them have {range}, the median {median}"
         )?;
-        if let Some(limits) = &self.limits {
+        if let Some(limits) = &measured.limits {
             let near = limits.broken_near().unwrap_or_else(|| "kept by all designs near it".to_owned());
             let own = limits.broken().map_or(near, |broken| format!("NOT KEPT: {broken}"));
             writeln!(f, "limits        {own}; broken by {} of {members} neighbours", limits.neighbours())?;
         }
-        writeln!(f, "verdict       {}", self.words)?;
+        writeln!(f, "verdict       {}", judged.words)?;
         if let Some(records) = &self.records {
             writeln!(f, "              Records: {}", records.words())?;
         }

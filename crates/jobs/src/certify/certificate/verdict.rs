@@ -44,13 +44,13 @@ impl Verdict {
     }
 }
 
-/// What measurements say of a design.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Judged {
-    /// In the unit of the value.
+    /// Largest difference of a run of the convergence study that could be finished to the worst run, in the unit of the value: how far the
+    /// methods agree.
     pub error_bar: f64,
     pub predictable: bool,
-    /// None where the design breaks a limit.
+    /// null where the design breaks a limit.
     pub verdict: Option<Verdict>,
     pub words: String,
 }
@@ -221,7 +221,7 @@ const NO_VALUE: &str = "has no value";
 pub(super) const NONE: &str = "no value";
 
 /// A value in words; one that is not finite is of a design that cannot be computed.
-pub(super) fn or_none(value: f64, quantity: Measure) -> String {
+pub fn or_none(value: f64, quantity: Measure) -> String {
     if value.is_finite() { measured(value, quantity) } else { NONE.to_owned() }
 }
 

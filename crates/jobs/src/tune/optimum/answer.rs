@@ -1,9 +1,9 @@
 //! The answer of a search in words: what to build, what it does, how sure that is, and what to do next. Lines fit 80 columns.
 
 use super::notes::{self, Goal, LimitNote};
-use super::run::{DescentNote, RunNote};
-use super::{FailureNote, Optimum, Valley, stop_words};
+use super::{DescentNote, FailureNote, Optimum, RunNote, Valley, stop_words};
 use crate::amount::Amount;
+use crate::certify::Verdict;
 use crate::needs::Needs;
 use crate::summary::how_many;
 use retune_model::Parameter;
@@ -23,7 +23,7 @@ impl Optimum {
         let mut lines = vec![String::new()];
         let mut say = |words: String| lines.push(wrapped(&words, "  "));
         say(self.headline());
-        let missed = self.certificate.missed_peak.as_ref().map(|words| format!("{words}; take more samples"));
+        let missed = self.certificate.missed_peak().map(|words| format!("{words}; take more samples"));
         let warnings = missed.into_iter().chain(self.needs.iter().flat_map(Needs::warnings));
         warnings.for_each(|words| say(format!("  note: {words}")));
         say(format!("  {}", self.compared()));
@@ -36,7 +36,7 @@ impl Optimum {
         for (name, words) in self.needs.iter().flat_map(|needs| needs.lines(&self.of)) {
             say(format!("  {name:<9}{words}"));
         }
-        say(format!("  motion   {}", self.certificate.motion_words()));
+        say(format!("  motion   {}", self.certificate.measured.motion.sentence));
         say(format!("  verdict  {}", self.certificate.verdict_words()));
         if let Some(limits) = &self.limits {
             say(format!("  {}", limits.report()));
@@ -72,7 +72,7 @@ impl Optimum {
     /// What to do next with the results in `out`.
     pub fn next(&self, out: &Path) -> String {
         let single = self.objective.as_ref().is_none_or(|goal| goal.band().is_none());
-        if self.certificate.is_chaotic() && single {
+        if self.certificate.judged.verdict == Some(Verdict::SingleChaoticRealisation) && single {
             return "next: give the study a band (`optimize.objective.omega`, docs/tuning.md): at this\n  \
                     frequency alone the value is one of many that practically equal designs have"
                 .to_owned();

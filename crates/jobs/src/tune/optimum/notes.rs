@@ -28,7 +28,6 @@ pub(crate) struct Goal {
     pub(crate) runs: Option<u64>,
 }
 
-/// The limits and the best design.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct LimitNote {
     pub(crate) allowed: Limits,
@@ -37,7 +36,7 @@ pub(crate) struct LimitNote {
     pub(crate) reached: Vec<(Limit, f64)>,
     pub(crate) feasible: bool,
     /// Whether it is proven that no design within the bounds keeps the limits: the least D + C exceeds that of the cavity.
-    #[serde(rename = "none_exists", skip_serializing_if = "is_false")]
+    #[serde(rename = "none_exists", skip_serializing_if = "retune_study::is_default")]
     pub(crate) proven: bool,
     /// The sum of reached / limit - 1 over the limits that are broken.
     violation: f64,
@@ -48,12 +47,10 @@ pub(crate) struct LimitNote {
     pub(crate) infeasible: u64,
 }
 
-/// As the fields of an object.
 fn by_name<S: Serializer>(reached: &[(Limit, f64)], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(reached.iter().map(|(limit, value)| (limit, value)))
 }
 
-/// A parameter that ended on a bound.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(transparent)]
 pub(crate) struct Met {
@@ -118,11 +115,6 @@ fn least_cavity(search: &Search) -> f64 {
         None => gap.get(&search.damper),
     };
     least(Parameter::D) + least(Parameter::C)
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
-fn is_false(value: &bool) -> bool {
-    !value
 }
 
 /// The parameters in which the best point of the grid lies at its edge, and not on a bound.

@@ -24,7 +24,6 @@ pub fn title(findings: &Findings) -> String {
     format!("tuned {kind}, {name} {value}")
 }
 
-/// The section.
 pub fn section(findings: &Findings, compared: &Compared, flags: &[Flag]) -> Section {
     let body = html! {
         (lead(findings))
@@ -92,25 +91,19 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
     let against = |other: &Result<Evaluation, Unusable>| match other {
         Ok(other) => {
             let words = compared(energy, other.value).unwrap_or_else(|| "–".to_owned());
-            (
-                words,
-                format!(
-                    "{}{}",
-                    amount(other.value, quantity),
-                    placed(", worst at ", other.worst.scene.forcing.frequency.get())
-                ),
-            )
+            let worst = placed(", worst at ", other.worst.scene.forcing.frequency.get());
+            (words, format!("{}{worst}", amount(other.value, quantity)))
         }
         Err(reason) => ("–".to_owned(), format!("it has no value: {reason}")),
     };
     let none = against(&beside.none);
     let study = against(&beside.study);
-    let certificate = findings.certificate;
-    let verdict = certificate.verdict.map_or("no verdict", |_| findings.optimum.verdict());
+    let certificate = &findings.optimum.certificate;
+    let verdict = certificate.judged.verdict.map_or("no verdict", |_| findings.optimum.verdict());
     let words = certificate
-        .words
+        .reason()
         .strip_prefix(verdict)
-        .map_or(certificate.words.as_str(), |rest| rest.trim_start_matches([':', ',', ' ']));
+        .map_or(certificate.reason(), |rest| rest.trim_start_matches([':', ',', ' ']));
     let fact = |name: &str, value: &str, more: &str| {
         html! { div { dt { (name) } dd { strong { (value) } @if !more.is_empty() { span.more { (more) } } } } }
     };
@@ -120,7 +113,7 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
         dl.facts {
             (fact("Against no damper", &none.0, &none.1))
             (fact(&format!("Against {}", baseline(&findings.study.scene)), &study.0, &study.1))
-            (fact("Certificate", verdict, &format!("{words}; methods differ by {} {}", digits(certificate.error_bar, 2), quantity.unit())))
+            (fact("Certificate", verdict, &format!("{words}; methods differ by {} {}", digits(certificate.judged.error_bar, 2), quantity.unit())))
             @if let Some(records) = &certificate.records { (fact("Other records", records.words(), "Values, not bounds")) }
             @if let Some(walls) = &certificate.walls { (fact("Contacts", &contacts(walls, energy, quantity), walls.words())) }
             @if let Some(needs) = &findings.optimum.needs {
@@ -133,7 +126,7 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
                 (say("Acceleration", Measure::Acceleration, "largest |a1| of the structure"))
                 (say("Force on the ground", Measure::GroundForce, "largest |k1 x1 + c1 v1|"))
             }
-            (fact("Motion", &certificate.motion.regime, &format!("at the worst frequency it {}", certificate.motion.sentence)))
+            (fact("Motion", &findings.measured().motion.regime, &format!("at the worst frequency it {}", findings.measured().motion.sentence)))
         }
     }
 }
@@ -167,29 +160,22 @@ fn others(needs: &Needs, measure: Measure) -> String {
 fn parameters(findings: &Findings) -> Markup {
     let Some(damper) = findings.tuned.damper else { return html! {} };
     let varied = &findings.search.variables;
-    let mut table = Table::new(
-        "The damper",
-        &["symbol", "name", "value", "unit", baseline(&findings.study.scene), "tuned"],
-    );
+    let baseline = baseline(&findings.study.scene);
+    let mut table = Table::new("The damper", &format!("symbol | name | value | unit | {baseline} | tuned"));
     let mut shown = vec![Parameter::M2];
     shown.extend(Parameter::columns(varied).into_iter().filter(|one| *one != Parameter::M2));
     for parameter in shown {
         let Some(value) = parameter.of_damper(&damper) else { continue };
-        table.row([
-            parameter.to_string(),
-            parameter.words().to_owned(),
-            four(value),
-            parameter.unit().to_owned(),
-            four(parameter.of(&findings.study.scene).unwrap_or(f64::NAN)),
-            if varied.contains(&parameter) { "tuned" } else { "given" }.to_owned(),
-        ]);
+        let own = four(parameter.of(&findings.study.scene).unwrap_or(f64::NAN));
+        let tuned = if varied.contains(&parameter) { "tuned" } else { "given" };
+        table.row([parameter.symbol(), parameter.words(), &four(value), parameter.unit(), &own, tuned]);
     }
     table.markup()
 }
 
 fn limits(findings: &Findings) -> Option<Table> {
     let note = findings.optimum.limits.as_ref()?;
-    let mut table = Table::new("Limits", &["limit", "largest in any run", "allowed", "unit", "state"]);
+    let mut table = Table::new("Limits", "limit | largest in any run | allowed | unit | state");
     for &(limit, reached) in &note.reached {
         let Some(allowed) = note.allowed.get(limit) else { continue };
         let state = match (reached > allowed, note.active.contains(&limit)) {
@@ -197,13 +183,7 @@ fn limits(findings: &Findings) -> Option<Table> {
             (_, true) => "kept, and it determines the design",
             _ => "kept",
         };
-        table.row([
-            limit.to_string(),
-            four(reached),
-            four(allowed),
-            limit.unit().to_owned(),
-            state.to_owned(),
-        ]);
+        table.row([limit.name(), &four(reached), &four(allowed), limit.unit(), state]);
     }
     Some(table)
 }

@@ -1,6 +1,6 @@
 //! What a page is made of: the study, the stages of its search, and what came out of them.
 
-use crate::certify::Certificate;
+use crate::certify::Measured;
 use crate::tune::band::Rows;
 use crate::tune::global::Explored;
 use crate::tune::optimum::Optimum;
@@ -19,14 +19,11 @@ pub(crate) struct Findings<'a> {
     pub explored: Option<&'a Explored>,
     pub refined: &'a Refined,
     pub optimum: &'a Optimum,
-    pub certificate: &'a Certificate,
-    /// The value of the tuned damper.
     pub evaluation: &'a Evaluation,
     /// The scene of the study with the tuned damper.
     pub tuned: Scene,
     /// The same at its worst frequency and stiffness.
     pub worst: Scene,
-    /// The run of that.
     pub response: &'a Response,
     /// The quantity over the band of the objective, if it has one.
     pub band: Option<Rows>,
@@ -36,9 +33,7 @@ pub(crate) struct Findings<'a> {
 
 /// What the tuned damper is compared with: the value of the objective, or why there is none.
 pub(super) struct Compared {
-    /// Without a damper.
     pub none: Result<Evaluation, Unusable>,
-    /// With the damper of the study.
     pub study: Result<Evaluation, Unusable>,
 }
 
@@ -46,6 +41,10 @@ impl Findings<'_> {
     /// What the search made small.
     pub fn quantity(&self) -> Measure {
         self.study.quantity()
+    }
+
+    pub fn measured(&self) -> &Measured {
+        &self.optimum.certificate.measured
     }
 
     /// The three scenes of every comparison, in the order of `band.csv`: no damper, that of the study, the tuned one.

@@ -18,10 +18,6 @@ const POINTS: f64 = 150.0;
 /// A wall is drawn unless it lies farther from the damper than this many times the width of its motion.
 const NEAR: f64 = 2.0;
 
-/// The section.
-///
-/// # Errors
-/// The run cannot be followed.
 pub fn section(findings: &Findings) -> Result<Section, Error> {
     let window = stretch(findings);
     let interval = (window.to - window.from) / (PERIODS * POINTS);
@@ -42,7 +38,6 @@ pub fn section(findings: &Findings) -> Result<Section, Error> {
     Ok(("motion", title, vec![Block::Elements(body)]))
 }
 
-/// The last periods of the window.
 fn stretch(findings: &Findings) -> Window {
     let Window { from, to } = findings.study.window.window();
     let omega = findings.worst_omega();
@@ -51,12 +46,11 @@ fn stretch(findings: &Findings) -> Window {
 }
 
 fn words(findings: &Findings) -> Table {
-    let (motion, response) = (&findings.certificate.motion, findings.response);
+    let (motion, response) = (&findings.measured().motion, findings.response);
     let [structure, obstacle] = motion.contacts_per_period;
     let exponent = format!("{} ± {}", four(motion.exponent), digits(motion.exponent_error, 2));
-    let mut table = Table::wrapping("The motion in numbers", &["quantity", "value", "meaning"]);
-    let mut row =
-        |name: &str, value: String, meaning: &str| table.row([name.to_owned(), value, meaning.to_owned()]);
+    let mut table = Table::wrapping("The motion in numbers", "quantity | value | meaning");
+    let mut row = |name: &str, value: String, meaning: &str| table.row([name, &value, meaning]);
     row(
         "kind",
         motion.regime.clone(),
@@ -92,12 +86,10 @@ fn words(findings: &Findings) -> Table {
 /// The same run by other methods.
 fn methods(findings: &Findings) -> Table {
     let quantity = findings.quantity();
-    let mut table = Table::new(
-        format!("{} of the worst run by other methods and tolerances", quantity.name()),
-        &["method", "relative tolerance", &label(quantity)],
-    );
-    for run in &findings.certificate.convergence {
-        table.row([run.method.name().to_owned(), format!("{:e}", run.rtol), digits(run.value.value, 10)]);
+    let caption = format!("{} of the worst run by other methods and tolerances", quantity.name());
+    let mut table = Table::new(caption, &format!("method | relative tolerance | {}", label(quantity)));
+    for run in &findings.measured().convergence {
+        table.row([run.method.name(), &format!("{:e}", run.rtol), &digits(run.value.value, 10)]);
     }
     table
 }
@@ -153,8 +145,7 @@ fn picture(findings: &Findings, window: Window, rows: &[Sample]) -> Drawing {
             95.0,
         ));
     }
-    let top = rows.iter().map(|row| row.e1).fold(0.0, f64::max);
-    let axis = Axis::linear("E1, J", (0.0, if top > 0.0 { 1.06 * top } else { 1.0 }));
+    let axis = Axis::from_zero("E1, J", rows.iter().map(|row| row.e1));
     charts.push(chart(
         "energy of the structure",
         axis,
@@ -163,7 +154,6 @@ fn picture(findings: &Findings, window: Window, rows: &[Sample]) -> Drawing {
     ));
     let names: Vec<&str> = charts.iter().map(|chart| chart.title.as_str()).collect();
     drawing(&Sheet {
-        title: "Motion at the worst frequency".to_owned(),
         description: format!(
             "Against time from {} to {} s, one below the other: {}.",
             four(window.from),
@@ -171,11 +161,9 @@ fn picture(findings: &Findings, window: Window, rows: &[Sample]) -> Drawing {
             names.join(", ")
         ),
         width: Width::Page,
-        charts,
-        columns: 1,
         stacked: true,
         legend,
-        caption: Vec::new(),
+        ..Sheet::of("Motion at the worst frequency", charts)
     })
 }
 

@@ -26,7 +26,6 @@ pub fn amount(value: f64, quantity: Measure) -> String {
     format!("{} {}", four(value), quantity.unit())
 }
 
-/// A length in millimetres.
 pub fn millimetres(metres: f64) -> String {
     format!("{} mm", four(1e3 * metres))
 }

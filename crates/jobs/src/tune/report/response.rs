@@ -1,12 +1,14 @@
 //! The response over frequency: how far the tuning reaches.
 
-use super::curves::{ABOUT, Curves};
 use super::findings::{Compared, Findings};
 use super::numbers::{HERTZ, amount, four, frequency};
 use crate::amount::label;
 use crate::summary::baseline;
+use crate::tune::band::{at, energy, first};
 use maud::{Markup, html};
-use retune_model::Measure;
+use rayon::prelude::*;
+use retune_model::{Measure, Scene};
+use retune_optim::Objective;
 use retune_report::colour::{BLACK, BLUE, GREY, VERMILION};
 use retune_report::document::{Block, Section};
 use retune_report::html::{figure, link};
@@ -62,7 +64,6 @@ impl<'a> Curve<'a> {
     }
 }
 
-/// The section.
 pub fn section(findings: &Findings, compared: &Compared) -> Section {
     let curves = Curves::new(findings);
     let names = lines(findings).map(|(name, _)| name);
@@ -113,40 +114,27 @@ fn picture(findings: &Findings, curves: &Curves, curve: Curve<'_>) -> Drawing {
     let y = if log {
         Axis::around(&*label, Scale::Log, values.iter().flatten().copied())
     } else {
-        Axis::linear(&*label, (0.0, if high > 0.0 { 1.06 * high } else { 1.0 }))
+        Axis::from_zero(&*label, [high])
     };
     let mut layers = Vec::new();
     if !curves.is_objective {
         layers.push(Layer::Upright { x: omega, stroke: Stroke::new(GREY, 1.0, Dash::Dots) });
     }
     for (curve, (_, stroke)) in values.iter().zip(lines) {
-        let points = curves.omega.iter().copied().zip(curve.iter().copied()).collect();
-        layers.push(Layer::Line { points, stroke });
+        let points = curves.omega.iter().copied().zip(curve.iter().copied());
+        layers.push(Layer::line(points, stroke));
     }
     let mark = Mark { rim: true, ..Mark::new(Shape::Disc, VERMILION, 5.0) };
     layers.push(Layer::Marks { points: vec![(omega, worst)], mark });
     let mut legend: Vec<(Key, String)> =
         lines.iter().map(|(name, stroke)| (Key::Line(*stroke), (*name).to_owned())).collect();
-    legend.push((
-        Key::Mark(mark),
-        format!(
-            "{}: {} {unit} at {} rad/s",
-            if curves.is_objective { "worst" } else { "tuned for" },
-            four(worst),
-            four(omega)
-        ),
-    ));
-    let chart = Chart {
-        title: String::new(),
-        x: Axis::linear("ω, rad/s", range).with_second("frequency, Hz", HERTZ),
-        y,
-        layers,
-        height: 210.0,
-    };
+    let what = if curves.is_objective { "worst" } else { "tuned for" };
+    legend.push((Key::Mark(mark), format!("{what}: {} {unit} at {} rad/s", four(worst), four(omega))));
+    let chart =
+        Chart::of(Axis::linear("ω, rad/s", range).with_second("frequency, Hz", HERTZ), y, layers, 210.0);
     let said: Vec<String> =
         lines.iter().zip(top).map(|((line, _), top)| format!("{line} {} {unit}", four(top))).collect();
     drawing(&Sheet {
-        title: format!("{name} against the frequency of the force"),
         description: format!(
             "{name} against ω from {} to {} rad/s on a {} scale. Highest points: {}.",
             four(range.0),
@@ -155,10 +143,85 @@ fn picture(findings: &Findings, curves: &Curves, curve: Curve<'_>) -> Drawing {
             said.join(", ")
         ),
         width: Width::Page,
-        charts: vec![chart],
-        columns: 1,
-        stacked: false,
         legend,
-        caption: Vec::new(),
+        ..Sheet::of(format!("{name} against the frequency of the force"), vec![chart])
     })
+}
+
+/// Half the width of the band about a single frequency, as a share of the natural frequency.
+pub const ABOUT: f64 = 0.2;
+/// Frequencies of such a band, of which as many again lie ever closer to the single one.
+const POINTS: i32 = 100;
+/// How often the distance to the single frequency is halved.
+const CLOSER: i32 = 10;
+
+/// Curves of the three scenes of [`Findings::scenes`]. Values that are not finite are missing.
+pub struct Curves {
+    /// rad/s, ascending.
+    pub omega: Vec<f64>,
+    /// What the search made small, in its unit.
+    pub value: [Vec<f64>; 3],
+    /// The largest displacement |x1| of the structure in the window of a run, mm.
+    pub displacement: [Vec<f64>; 3],
+    /// Whether the objective looks at all of these frequencies, or at a single one only.
+    pub is_objective: bool,
+}
+
+impl Curves {
+    pub fn new(findings: &Findings) -> Self {
+        let own = findings.band.as_ref().filter(|rows| !rows.is_empty());
+        let (omega, value) = match own {
+            Some(rows) => {
+                let value = [0, 1, 2].map(|scene| rows.iter().map(|row| row.1[scene]).collect());
+                (rows.iter().map(|row| row.0).collect(), value)
+            }
+            None => about(findings),
+        };
+        let displacement = displacements(findings, &omega);
+        Self { omega, value, displacement, is_objective: own.is_some() }
+    }
+
+    /// The largest of a curve, where there is one.
+    pub fn largest(curve: &[f64]) -> f64 {
+        curve.iter().copied().filter(|value| value.is_finite()).fold(0.0, f64::max)
+    }
+}
+
+fn about(findings: &Findings) -> (Vec<f64>, [Vec<f64>; 3]) {
+    let objective = findings.study.objective();
+    let term = first(&objective).cloned().unwrap_or_default();
+    // One run a frequency, of the nominal scene.
+    let single = Objective { omega: None, ensemble: None, k1: None, restitution: None, ..term };
+    let omega = frequencies(findings);
+    let value = |(scene, omega): (Scene, f64)| {
+        at(omega, scene).map_or(f64::NAN, |scene| energy(findings.study, scene, &single))
+    };
+    let scenes = findings.scenes();
+    let asked: Vec<(Scene, f64)> =
+        scenes.iter().flat_map(|scene| omega.iter().map(|omega| (*scene, *omega))).collect();
+    let found: Vec<f64> = asked.into_par_iter().map(value).collect();
+    let of = |scene: usize| found[scene * omega.len()..(scene + 1) * omega.len()].to_vec();
+    (omega.clone(), [of(0), of(1), of(2)])
+}
+
+/// The amplitude of the structure at each frequency, mm.
+fn displacements(findings: &Findings, omega: &[f64]) -> [Vec<f64>; 3] {
+    let (window, settings) = (findings.study.window.window(), findings.study.solver.settings());
+    let value = |scene: Scene, omega: f64| {
+        let run = at(omega, scene).and_then(|scene| retune_solver::simulate(&scene, window, &settings).ok());
+        run.map_or(f64::NAN, |run| 1e3 * run.structure.displacement.value)
+    };
+    findings.scenes().map(|scene| omega.par_iter().map(|omega| value(scene, *omega)).collect())
+}
+
+fn frequencies(findings: &Findings) -> Vec<f64> {
+    let middle = findings.worst_omega();
+    let half = ABOUT * findings.worst.primary.natural_frequency();
+    let even = (-POINTS / 2..=POINTS / 2).map(|i| 2.0 * f64::from(i) / f64::from(POINTS));
+    let near = (1..=CLOSER).map(|i| 0.5_f64.powi(i)).flat_map(|share| [-share, share]);
+    let mut all: Vec<f64> =
+        even.chain(near).map(|share| middle + share * half).filter(|omega| *omega > 0.0).collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    all
 }

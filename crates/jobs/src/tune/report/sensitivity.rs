@@ -17,9 +17,8 @@ use retune_report::{
 const ROW: f64 = 17.0;
 const HALF: f64 = 0.32;
 
-/// The section.
 pub fn section(findings: &Findings) -> Section {
-    let near = &findings.certificate.neighbourhood;
+    let near = &findings.measured().neighbourhood;
     let quantity = findings.quantity();
     let name = quantity.name();
     let said = |value: f64| said(value, quantity);
@@ -27,13 +26,13 @@ pub fn section(findings: &Findings) -> Section {
         p {
             "Of " (near.members) " designs whose k1, k2, c2, D and C are off by at most " (digits(100.0 * near.errors, 3))
             " %, nine in ten have an " (name) " from " (said(near.low)) " to " (said(near.high)) ", and half have less than "
-            (said(near.median)) ". The design itself has " (said(findings.certificate.value.value)) "."
+            (said(near.median)) ". The design itself has " (said(findings.optimum.certificate.value.value)) "."
         }
         (figure(&picture(findings), html! {
             "The largest " (name) " with one parameter off by at most 1 %, and the neighbours' spread. " (link(crate::certify::FILE))
         }))
         (table(findings).markup())
-        @if let Some(walls) = &findings.certificate.walls { (walls_table(findings, walls).markup()) }
+        @if let Some(walls) = &findings.optimum.certificate.walls { (walls_table(findings, walls).markup()) }
     };
     ("sensitivity", "Sensitivity to small errors", vec![Block::Elements(body)])
 }
@@ -44,18 +43,13 @@ fn said(value: f64, quantity: Measure) -> String {
 }
 
 fn table(findings: &Findings) -> Table {
-    let certificate = findings.certificate;
+    let certificate = &findings.optimum.certificate;
     let (name, unit) = (findings.quantity().name(), findings.quantity().unit());
-    let head = [
-        "parameter",
-        "value",
-        &format!("change for 1 % more, {unit}"),
-        &format!("largest within 1 %, {unit}"),
-        "at, %",
-        "against the design, %",
-    ];
+    let head = format!(
+        "parameter | value | change for 1 % more, {unit} | largest within 1 %, {unit} | at, % | against the design, %"
+    );
     let mut table = Table::new(format!("{name} with one parameter off"), &head);
-    for one in &certificate.sensitivity {
+    for one in &certificate.measured.sensitivity {
         let sign = |value: f64, text: String| if value > 0.0 { format!("+{text}") } else { text };
         let percent = 100.0 * (one.worst / certificate.value.value - 1.0);
         table.row([
@@ -70,11 +64,10 @@ fn table(findings: &Findings) -> Table {
     table
 }
 
-/// The value between other walls.
 fn walls_table(findings: &Findings, walls: &Walls) -> Table {
-    let own = findings.certificate.value.value;
+    let own = findings.optimum.certificate.value.value;
     let quantity = findings.quantity();
-    let head = ["walls", &label(quantity), "worst at ω, rad/s", "against the design, %"];
+    let head = format!("walls | {} | worst at ω, rad/s | against the design, %", label(quantity));
     let title =
         format!("{} with other walls: e is the restitution at every speed, K the stiffness", quantity.name());
     let mut table = Table::new(title, &head);
@@ -88,10 +81,10 @@ fn walls_table(findings: &Findings, walls: &Walls) -> Table {
 }
 
 fn picture(findings: &Findings) -> Drawing {
-    let (certificate, quantity) = (findings.certificate, findings.quantity());
+    let (certificate, quantity) = (&findings.optimum.certificate, findings.quantity());
     let name = quantity.name();
-    let (own, near) = (certificate.value.value, &certificate.neighbourhood);
-    let bars = &certificate.sensitivity;
+    let (own, near) = (certificate.value.value, &certificate.measured.neighbourhood);
+    let bars = &certificate.measured.sensitivity;
     let place = |i: usize| -(i as f64);
     let bar = |i: usize, ends: (f64, f64), colour| Layer::Band {
         x: ends,
@@ -116,17 +109,15 @@ fn picture(findings: &Findings) -> Drawing {
     layers.push(Layer::Upright { x: own, stroke: rule });
     let values: Vec<f64> =
         bars.iter().map(|one| one.worst).chain([own, near.low, near.median, near.high]).collect();
-    let chart = Chart {
-        title: String::new(),
-        x: Axis::around(label(quantity), scale_for(&values), values.iter().copied()),
-        y: Axis::of_names((place(last) - 0.7, 0.7), names),
+    let chart = Chart::of(
+        Axis::around(label(quantity), scale_for(&values), values.iter().copied()),
+        Axis::of_names((place(last) - 0.7, 0.7), names),
         layers,
-        height: ROW * (last as f64 + 1.4) + 30.0,
-    };
+        ROW * (last as f64 + 1.4) + 30.0,
+    );
     let said: Vec<String> =
         bars.iter().map(|one| format!("{} {}", one.parameter, amount(one.worst, quantity))).collect();
     drawing(&Sheet {
-        title: format!("{name} with one parameter off by at most 1 %"),
         description: format!(
             "A bar for each parameter from the design's {name}, {}, to the largest: {}. Neighbours: {} to {}.",
             amount(own, quantity),
@@ -135,9 +126,6 @@ fn picture(findings: &Findings) -> Drawing {
             amount(near.high, quantity)
         ),
         width: Width::Page,
-        charts: vec![chart],
-        columns: 1,
-        stacked: false,
         legend: vec![
             (Key::Line(rule), "the design".to_owned()),
             (Key::Area(VERMILION, 1.0), "largest within 1 % of one parameter".to_owned()),
@@ -147,6 +135,6 @@ fn picture(findings: &Findings) -> Drawing {
             ),
             (Key::Mark(median), "their median".to_owned()),
         ],
-        caption: Vec::new(),
+        ..Sheet::of(format!("{name} with one parameter off by at most 1 %"), vec![chart])
     })
 }
