@@ -4,7 +4,7 @@ use crate::equations::Equations;
 use crate::inverse::Inverse;
 use crate::largest::{Largest, largest};
 use crate::number::{STATE, State};
-use crate::orbit::Orbit;
+use crate::orbit::{Orbit, Residual};
 use crate::stability::{Stability, stability};
 use crate::taylor::Taylor;
 use crate::theorem::{about, impacts, is_inside, krawczyk, width};
@@ -152,7 +152,7 @@ impl Task<'_> {
                 Err(why @ Failure::Above { least, .. }) if least > self.most => {
                     return (pieces, first, Some((end, why)));
                 }
-                Err(why) if why == Failure::NoGuess || (end - at).abs() <= SHORTEST => {
+                Err(why) if (end - at).abs() <= SHORTEST => {
                     return (pieces, first, Some((at, why)));
                 }
                 Err(_) => length = SHORTER * (end - at).abs(),
@@ -161,22 +161,32 @@ impl Task<'_> {
         (pieces, first, None)
     }
 
+    /// The motion at one frequency, if it is stable: where it is not, no piece is tried.
+    fn motion(&self, omega: f64, last: Option<&Last>) -> Result<Orbit, Failure> {
+        let equations = self.equations.at(Taylor::point(omega));
+        let start = match last {
+            Some(last) => last.orbit.member(&equations, (omega - last.omega[0]) / last.omega[1])?,
+            None => {
+                let (state, periods) = (self.guesses)(omega).ok_or(Failure::NoGuess)?;
+                Orbit::guess(&equations, state, periods, false)?
+            }
+        };
+        let (orbit, _) = start.improved(&equations)?;
+        let known = orbit.residual(&equations, &vec![[Interval::ZERO; STATE]; orbit.nodes.len()])?;
+        match stability(&orbit, &known.passages) {
+            Stability::Stable(_) => Ok(orbit),
+            Stability::Unstable | Stability::Open => Err(Failure::NotStable),
+        }
+    }
+
     /// A piece, and its family.
     fn piece(&self, omega: [f64; 2], last: Option<&Last>) -> Result<(Piece, Last), Failure> {
         let middle = 0.5 * (omega[0] + omega[1]);
         let half = (Interval::new(omega[0], omega[1]) - Interval::point(middle)).magnitude();
-        let alone = self.equations.at(Taylor::point(middle));
-        let start = match last {
-            Some(last) => last.orbit.member(&alone, (middle - last.omega[0]) / last.omega[1])?,
-            None => {
-                let (state, periods) = (self.guesses)(middle).ok_or(Failure::NoGuess)?;
-                Orbit::guess(&alone, state, periods, false)?
-            }
-        };
-        let (orbit, _) = start.improved(&alone)?;
+        let orbit = self.motion(middle, last)?;
         let equations = self.equations.at(Taylor::line(middle, half));
-        let (orbit, inverse) = orbit.widened(&equations)?;
-        let boxes = family(&equations, &orbit, &inverse)?;
+        let (orbit, inverse, known) = orbit.widened(&equations)?;
+        let boxes = family(&equations, &orbit, &inverse, &known)?;
         let known = orbit.residual(&equations, &boxes)?;
         let Stability::Stable(multipliers) = stability(&orbit, &known.passages) else {
             return Err(Failure::NotStable);
@@ -192,10 +202,15 @@ impl Task<'_> {
     }
 }
 
-/// The boxes about a family that hold exactly one motion for each value of its parameter.
-fn family(equations: &Equations, orbit: &Orbit, inverse: &Inverse) -> Result<Vec<State>, Failure> {
+/// The boxes about a family that hold exactly one motion for each value of its parameter, from what the equations leave of the family alone.
+fn family(
+    equations: &Equations,
+    orbit: &Orbit,
+    inverse: &Inverse,
+    alone: &Residual,
+) -> Result<Vec<State>, Failure> {
     let none = vec![[Interval::ZERO; STATE]; orbit.nodes.len()];
-    let least = krawczyk(orbit, inverse, &orbit.residual(equations, &none)?, &none);
+    let least = krawczyk(orbit, inverse, alone, &none);
     let mut failure = Failure::Sequence;
     for times in TRIED {
         let boxes = about(orbit, &least, times, f64::INFINITY);
@@ -228,8 +243,8 @@ mod tests {
         let guess = Orbit::guess(&alone, [-0.0282, 0.608, 0.183, -1.121], 1, false).expect("a guess");
         let (orbit, _) = guess.improved(&alone).expect("a motion");
         let wide = equations.at(Taylor::line(omega, half));
-        let (orbit, inverse) = orbit.widened(&wide).expect("a family");
-        let boxes = family(&wide, &orbit, &inverse).expect("a proof");
+        let (orbit, inverse, known) = orbit.widened(&wide).expect("a family");
+        let boxes = family(&wide, &orbit, &inverse, &known).expect("a proof");
         for end in [-1.0, 1.0] {
             let there = equations.at(Taylor::point(omega + half * end));
             let (own, _) = orbit.member(&there, end).and_then(|own| own.improved(&there)).expect("a motion");
