@@ -16,12 +16,14 @@ use serde::Serialize;
 const TRIED: [f64; 3] = [1.5, 3.0, 10.0];
 /// The longest piece and the shortest, rad/s.
 const LONGEST: f64 = 0.05;
-const SHORTEST: f64 = 1e-5;
+const SHORTEST: f64 = 2e-5;
 /// By how much a piece is longer than the last one, or shorter where the last one failed.
 const LONGER: f64 = 1.4;
 const SHORTER: f64 = 0.5;
 /// What is left out where no piece can be proven, rad/s; twice as much each time that nothing beyond can be proven either, up to the most.
-const LEFT_OUT: [f64; 2] = [2e-5, 0.01];
+const LEFT_OUT: [f64; 2] = [1e-4, 0.01];
+/// The longest piece that is tried after it, in what was left out: motions change fast next to a bifurcation.
+const AFTER: f64 = 8.0;
 
 /// A piece of the band over which a family of motions is proven: at each of its frequencies there is exactly one in a box.
 #[derive(Clone, Debug, Serialize)]
@@ -67,13 +69,13 @@ pub type Guesses<'a> = &'a dyn Fn(f64) -> Option<([f64; 4], usize)>;
 pub fn band(scene: &Scene, [from, to]: [f64; 2], most: f64, guesses: Guesses<'_>) -> Result<Band, Failure> {
     let equations = Equations::new(scene)?;
     let task = Task { equations: &equations, most, guesses };
-    let (mut band, mut at, mut gap) = (Band::default(), from, LEFT_OUT[0]);
+    let (mut band, mut at, mut gap, mut length) = (Band::default(), from, LEFT_OUT[0], LONGEST);
     while at < to {
-        let (pieces, own, stop) = task.march([at, to], None);
+        let (pieces, own, stop) = task.march([at, to], length, None);
         if let (Some(first), Some(part)) = (own, band.left_out.last_mut())
             && part.omega[1] == at
         {
-            let (mut back, ..) = task.march([at, part.omega[0]], Some(first));
+            let (mut back, ..) = task.march([at, part.omega[0]], LONGEST, Some(first));
             back.reverse();
             part.omega[1] = back.first().map_or(at, |piece| piece.omega[0]);
             band.pieces.extend(back);
@@ -87,7 +89,7 @@ pub fn band(scene: &Scene, [from, to]: [f64; 2], most: f64, guesses: Guesses<'_>
         if let Some((end, why)) = stop {
             let next = (at + gap).max(end).min(to);
             band.leave_out(LeftOut { omega: [at, next], why });
-            (at, gap) = (next, (2.0 * gap).min(LEFT_OUT[1]));
+            (at, gap, length) = (next, (2.0 * gap).min(LEFT_OUT[1]), (AFTER * gap).min(LONGEST));
         }
     }
     Ok(band)
@@ -136,8 +138,8 @@ type March = (Vec<Piece>, Option<Last>, Option<(f64, Failure)>);
 
 impl Task<'_> {
     /// Pieces from a frequency up or down to another one, from a family next to them or a guess.
-    fn march(&self, [from, to]: [f64; 2], beside: Option<Last>) -> March {
-        let (mut pieces, mut first, mut at, mut length) = (Vec::new(), None, from, LONGEST);
+    fn march(&self, [from, to]: [f64; 2], longest: f64, beside: Option<Last>) -> March {
+        let (mut pieces, mut first, mut at, mut length) = (Vec::new(), None, from, longest);
         let mut last = beside;
         while at != to {
             let end = if (to - at).abs() <= 1.01 * length { to } else { at + length.copysign(to - at) };
