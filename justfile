@@ -53,12 +53,17 @@ simulate STUDY="studies/ssvi.json" *OPTIONS:
 prove STUDY *OPTIONS:
     {{retune}} prove "$@"
 
-# Prove the tuned dampers over bands: the TMD over 5 to 8 rad/s, the SSVI NES up to 7.5 rad/s, into results/proof
+# Prove the tuned dampers over bands, the hedged one with its largest loss and without, into results/proof (ten minutes of one core)
 [group('examine')]
 proof:
     mkdir -p results/proof
     {{retune}} prove results/tmd --omega 5 --to 8 --json > results/proof/tmd.json
     {{retune}} prove results/ssvi --omega 5 --to 7.5 --most 225.82 --json > results/proof/ssvi.json
+    {{retune}} prove results/ssvi --omega 7.5 --to 7.69 --most 225.82 --json > results/proof/ssvi-7.5.json
+    {{retune}} prove results/ssvi --omega 7.69 --to 7.711 --most 225.82 --json > results/proof/ssvi-7.69.json
+    {{retune}} prove results/ssvi --omega 7.89 --to 8 --most 225.82 --json > results/proof/ssvi-7.89.json
+    {{retune}} prove results/ssvi-hedged --set restitution=0.6 --omega 5 --to 8 --most 255.74 --json > results/proof/ssvi-hedged.json
+    {{retune}} prove results/ssvi-hedged --set restitution=1 --omega 5 --to 8 --most 255.74 --json > results/proof/ssvi-hedged-lossless.json
     python3 tests/proof.py --write
 
 # Turn the parameters of a damper in the browser and see its motion and response, e.g. `just explore results/ssvi`

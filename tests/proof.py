@@ -16,15 +16,45 @@ HEAD = """# Proven bands
 periodic motion with at most so much energy. The JSON files have the pieces with bounds on E1max, stroke and contact force over each, and why the rest is left out.
 [orbits.md](orbits.md) has single motions. `python3 tests/proof.py` checks that pieces and gaps cover the band without a hole, and that this page says what they say.
 
-| file | omega, rad/s | pieces | E1max is at most, J | impacts | not proven, rad/s |
+| file | omega, rad/s | pieces | E1max is at most, J | proven, share of the band | not proven, rad/s |
 | --- | --- | --- | --- | --- | --- |
+"""
+INTERVALS = """
+## Motions
+
+What was proven from where to where, and what not: at each frequency of a row there is a stable motion that repeats after so many periods of the force and strikes
+these walls in turn (S the structure, O the obstacle). Ends are rounded; the JSON files have them in full.
+
+| file | omega, rad/s | periods | impacts | E1max is at most, J |
+| --- | --- | --- | --- | --- |
 """
 
 
-def runs(pieces):
-    """The sequences of impacts in turn, each once for all pieces that follow one another."""
-    names = [piece["impacts"] or "none" for piece in pieces]
-    return [name for k, name in enumerate(names) if k == 0 or names[k - 1] != name]
+def intervals(proof):
+    """What was proven from where to where: pieces of like motions, and gaps, in turn."""
+    parts = [(part["omega"], part) for part in proof["pieces"] + proof["left_out"]]
+    found = []
+    for omega, part in sorted(parts, key=lambda part: part[0]):
+        kind = (part["why"],) if "why" in part else (part["periods"], part["impacts"] or "none")
+        most = 0.0 if "why" in part else part["largest"]["E1max"][1]
+        if found and found[-1][0] == kind:
+            (_, ends, least) = found[-1]
+            found[-1] = (kind, [ends[0], omega[1]], max(most, least))
+        else:
+            found.append((kind, omega, most))
+    return found
+
+
+def upwards(energy):
+    """What it is at most may not be rounded down."""
+    return f"{math.ceil(energy * 1e5) / 1e5:.5f}"
+
+
+def interval(name, kind, ends, most):
+    a, b = (f"{end:.7g}" for end in ends)
+    if len(kind) == 1:
+        return f"| {name} | {a} to {b} | - | not proven: {kind[0]} | - |\n"
+    return f"| {name} | {a} to {b} | {kind[0]} | {kind[1]} | {upwards(most)} |\n"
 
 
 def cover(name, proof):
@@ -42,22 +72,21 @@ def cover(name, proof):
 
 
 def row(name, proof):
-    left = [f"{a:.6g} to {b:.6g}" for a, b in (part["omega"] for part in proof["left_out"])]
-    share = sum(b - a for a, b in (part["omega"] for part in proof["left_out"]))
-    impacts = runs(proof["pieces"])
-    shown = ", ".join(impacts) if len(impacts) < 8 else f"{', '.join(impacts[:3])}, … ({len(impacts)} in turn)"
-    some = "; ".join(left) if len(left) < 9 else f"{len(left)} parts from {left[0].split()[0]} to {left[-1].split()[-1]}"
-    rest = f"{some} ({share:.4f} in all)" if left else "none"
+    left = [part["omega"] for part in proof["left_out"]]
+    some = "; ".join(f"{a:.7g} to {b:.7g}" for a, b in left)
+    shown = some if len(left) < 9 else f"{len(left)} parts from {left[0][0]:.7g} to {left[-1][1]:.7g}"
     a, b = proof["omega"]
-    # What it is at most may not be rounded down.
-    most = math.ceil(proof["E1max"][1] * 1e5) / 1e5
-    return f"| [{name}]({name}) | {a:g} to {b:g} | {len(proof['pieces'])} | {most:.5f} | {shown} | {rest} |\n"
+    share = 1 - sum(b - a for a, b in left) / (b - a)
+    # No more than is proven.
+    proven = f"{math.floor(share * 1e6) / 1e4:.4f} %" if left else "100 %"
+    return f"| [{name}]({name}) | {a:g} to {b:g} | {len(proof['pieces'])} | {upwards(proof['E1max'][1])} | {proven} | {shown or 'none'} |\n"
 
 
 def main():
     proofs = {file.name: json.loads(file.read_text()) for file in sorted(PLACE.glob("*.json"))}
     faults = [fault for name, proof in proofs.items() for fault in cover(name, proof)]
     text = HEAD + "".join(row(name, proof) for name, proof in proofs.items())
+    text += INTERVALS + "".join(interval(name, *part) for name, proof in proofs.items() for part in intervals(proof))
     if "--write" in sys.argv:
         README.write_text(text)
     elif README.read_text() != text:

@@ -4,7 +4,7 @@ use crate::equations::Equations;
 use crate::inverse::Inverse;
 use crate::largest::{Largest, largest};
 use crate::number::{STATE, State};
-use crate::orbit::Orbit;
+use crate::orbit::{Orbit, Residual};
 use crate::stability::{Stability, stability};
 use crate::taylor::Taylor;
 use crate::theorem::{about, impacts, is_inside, krawczyk, width};
@@ -16,19 +16,23 @@ use serde::Serialize;
 const TRIED: [f64; 3] = [1.5, 3.0, 10.0];
 /// The longest piece and the shortest, rad/s.
 const LONGEST: f64 = 0.05;
-const SHORTEST: f64 = 1e-6;
+const SHORTEST: f64 = 2e-5;
 /// By how much a piece is longer than the last one, or shorter where the last one failed.
 const LONGER: f64 = 1.4;
 const SHORTER: f64 = 0.5;
 /// What is left out where no piece can be proven, rad/s; twice as much each time that nothing beyond can be proven either, up to the most.
-const LEFT_OUT: [f64; 2] = [1e-4, 0.05];
+const LEFT_OUT: [f64; 2] = [1e-4, 0.01];
+/// The longest piece that is tried after it, in what was left out: motions change fast next to a bifurcation.
+const AFTER: f64 = 8.0;
 
 /// A piece of the band over which a family of motions is proven: at each of its frequencies there is exactly one in a box.
 #[derive(Clone, Debug, Serialize)]
 pub struct Piece {
     /// From where to where, rad/s.
     pub omega: [f64; 2],
-    /// The walls that each motion strikes in turn.
+    /// Periods of the force after which each motion repeats.
+    pub periods: usize,
+    /// The walls that it strikes in turn.
     pub impacts: String,
     /// Bounds that hold at all frequencies: the largest value at each is in them.
     pub largest: Largest,
@@ -58,33 +62,34 @@ pub struct LeftOut {
 pub type Guesses<'a> = &'a dyn Fn(f64) -> Option<([f64; 4], usize)>;
 
 /// Proves stable motions with an E1max of at most `most` (J) over a band, as far as it can. A motion is followed from piece to piece, which need not be one branch:
-/// where it is lost, a new one is guessed.
+/// where it is lost, a new one is guessed beyond, and followed to both sides.
 ///
 /// # Errors
 /// The proof does not cover such scenes.
 pub fn band(scene: &Scene, [from, to]: [f64; 2], most: f64, guesses: Guesses<'_>) -> Result<Band, Failure> {
     let equations = Equations::new(scene)?;
-    let (mut band, mut at, mut length, mut gap) = (Band::default(), from, LONGEST, LEFT_OUT[0]);
-    let mut last: Option<Last> = None;
+    let task = Task { equations: &equations, most, guesses };
+    let (mut band, mut at, mut gap, mut length) = (Band::default(), from, LEFT_OUT[0], LONGEST);
     while at < to {
-        let end = if at + 1.01 * length >= to { to } else { at + length };
-        match piece(&equations, [at, end], most, last.as_ref(), guesses) {
-            Ok((piece, own)) => {
-                band.pieces.push(piece);
-                (length, gap) = ((LONGER * (end - at)).min(LONGEST), LEFT_OUT[0]);
-                (at, last) = (end, Some(own));
+        let (pieces, own, stop) = task.march([at, to], length, None);
+        if let (Some(first), Some(part)) = (own, band.left_out.last_mut())
+            && part.omega[1] == at
+        {
+            let (mut back, ..) = task.march([at, part.omega[0]], LONGEST, Some(first));
+            back.reverse();
+            part.omega[1] = back.first().map_or(at, |piece| piece.omega[0]);
+            band.pieces.extend(back);
+            if part.omega[1] <= part.omega[0] {
+                band.left_out.pop();
             }
-            // All motions of the piece have more.
-            Err(why @ Failure::Above { least, .. }) if least > most => {
-                band.leave_out(LeftOut { omega: [at, end], why });
-                (at, last) = (end, None);
-            }
-            Err(_) if end - at > SHORTEST => length = SHORTER * (end - at),
-            Err(why) => {
-                let next = (at + gap).min(to);
-                band.leave_out(LeftOut { omega: [at, next], why });
-                (at, last, length, gap) = (next, None, LONGEST, (2.0 * gap).min(LEFT_OUT[1]));
-            }
+            gap = LEFT_OUT[0];
+        }
+        at = pieces.last().map_or(at, |piece| piece.omega[1]);
+        band.pieces.extend(pieces);
+        if let Some((end, why)) = stop {
+            let next = (at + gap).max(end).min(to);
+            band.leave_out(LeftOut { omega: [at, next], why });
+            (at, gap, length) = (next, (2.0 * gap).min(LEFT_OUT[1]), (AFTER * gap).min(LONGEST));
         }
     }
     Ok(band)
@@ -115,49 +120,99 @@ impl Band {
 }
 
 /// The family of a piece, with the frequency in its middle and half its width.
+#[derive(Clone)]
 struct Last {
     orbit: Orbit,
     omega: [f64; 2],
 }
 
-/// A piece, and its family.
-fn piece(
-    equations: &Equations,
-    omega: [f64; 2],
+/// What is to be proven.
+struct Task<'a> {
+    equations: &'a Equations,
     most: f64,
-    last: Option<&Last>,
-    guesses: Guesses<'_>,
-) -> Result<(Piece, Last), Failure> {
-    let middle = 0.5 * (omega[0] + omega[1]);
-    let half = (Interval::new(omega[0], omega[1]) - Interval::point(middle)).magnitude();
-    let alone = equations.at(Taylor::point(middle));
-    let start = match last {
-        Some(last) => last.orbit.member(&alone, (middle - last.omega[0]) / last.omega[1])?,
-        None => {
-            let (state, periods) = guesses(middle).ok_or(Failure::NoGuess)?;
-            Orbit::guess(&alone, state, periods, false)?
-        }
-    };
-    let (orbit, _) = start.improved(&alone)?;
-    let equations = equations.at(Taylor::line(middle, half));
-    let (orbit, inverse) = orbit.widened(&equations)?;
-    let boxes = family(&equations, &orbit, &inverse)?;
-    let known = orbit.residual(&equations, &boxes)?;
-    let Stability::Stable(multipliers) = stability(&orbit, &known.passages) else {
-        return Err(Failure::NotStable);
-    };
-    let largest = largest(&equations, &known.passages);
-    if largest.energy.hi() > most {
-        return Err(Failure::Above { least: largest.energy.lo(), bound: largest.energy.hi(), most });
-    }
-    let piece = Piece { omega, impacts: impacts(&orbit), largest, multipliers };
-    Ok((piece, Last { orbit, omega: [middle, half] }))
+    guesses: Guesses<'a>,
 }
 
-/// The boxes about a family that hold exactly one motion for each value of its parameter.
-fn family(equations: &Equations, orbit: &Orbit, inverse: &Inverse) -> Result<Vec<State>, Failure> {
+/// Pieces in turn, the family of the first, and where and why nothing more can be proven.
+type March = (Vec<Piece>, Option<Last>, Option<(f64, Failure)>);
+
+impl Task<'_> {
+    /// Pieces from a frequency up or down to another one, from a family next to them or a guess.
+    fn march(&self, [from, to]: [f64; 2], longest: f64, beside: Option<Last>) -> March {
+        let (mut pieces, mut first, mut at, mut length) = (Vec::new(), None, from, longest);
+        let mut last = beside;
+        while at != to {
+            let end = if (to - at).abs() <= 1.01 * length { to } else { at + length.copysign(to - at) };
+            let omega = [at.min(end), at.max(end)];
+            match self.piece(omega, last.as_ref()) {
+                Ok((piece, own)) => {
+                    pieces.push(piece);
+                    first.get_or_insert_with(|| own.clone());
+                    (at, last, length) = (end, Some(own), (LONGER * (end - at).abs()).min(LONGEST));
+                }
+                // All motions of the piece have more.
+                Err(why @ Failure::Above { least, .. }) if least > self.most => {
+                    return (pieces, first, Some((end, why)));
+                }
+                Err(why) if (end - at).abs() <= SHORTEST => {
+                    return (pieces, first, Some((at, why)));
+                }
+                Err(_) => length = SHORTER * (end - at).abs(),
+            }
+        }
+        (pieces, first, None)
+    }
+
+    /// The motion at one frequency, if it is stable: where it is not, no piece is tried.
+    fn motion(&self, omega: f64, last: Option<&Last>) -> Result<Orbit, Failure> {
+        let equations = self.equations.at(Taylor::point(omega));
+        let start = match last {
+            Some(last) => last.orbit.member(&equations, (omega - last.omega[0]) / last.omega[1])?,
+            None => {
+                let (state, periods) = (self.guesses)(omega).ok_or(Failure::NoGuess)?;
+                Orbit::guess(&equations, state, periods, false)?
+            }
+        };
+        let (orbit, _) = start.improved(&equations)?;
+        let known = orbit.residual(&equations, &vec![[Interval::ZERO; STATE]; orbit.nodes.len()])?;
+        match stability(&orbit, &known.passages) {
+            Stability::Stable(_) => Ok(orbit),
+            Stability::Unstable | Stability::Open => Err(Failure::NotStable),
+        }
+    }
+
+    /// A piece, and its family.
+    fn piece(&self, omega: [f64; 2], last: Option<&Last>) -> Result<(Piece, Last), Failure> {
+        let middle = 0.5 * (omega[0] + omega[1]);
+        let half = (Interval::new(omega[0], omega[1]) - Interval::point(middle)).magnitude();
+        let orbit = self.motion(middle, last)?;
+        let equations = self.equations.at(Taylor::line(middle, half));
+        let (orbit, inverse, known) = orbit.widened(&equations)?;
+        let boxes = family(&equations, &orbit, &inverse, &known)?;
+        let known = orbit.residual(&equations, &boxes)?;
+        let Stability::Stable(multipliers) = stability(&orbit, &known.passages) else {
+            return Err(Failure::NotStable);
+        };
+        let largest = largest(&equations, &known.passages);
+        if largest.energy.hi() > self.most {
+            let [least, bound] = [largest.energy.lo(), largest.energy.hi()];
+            return Err(Failure::Above { least, bound, most: self.most });
+        }
+        let (periods, impacts) = (orbit.periods, impacts(&orbit));
+        let piece = Piece { omega, periods, impacts, largest, multipliers };
+        Ok((piece, Last { orbit, omega: [middle, half] }))
+    }
+}
+
+/// The boxes about a family that hold exactly one motion for each value of its parameter, from what the equations leave of the family alone.
+fn family(
+    equations: &Equations,
+    orbit: &Orbit,
+    inverse: &Inverse,
+    alone: &Residual,
+) -> Result<Vec<State>, Failure> {
     let none = vec![[Interval::ZERO; STATE]; orbit.nodes.len()];
-    let least = krawczyk(orbit, inverse, &orbit.residual(equations, &none)?, &none);
+    let least = krawczyk(orbit, inverse, alone, &none);
     let mut failure = Failure::Sequence;
     for times in TRIED {
         let boxes = about(orbit, &least, times, f64::INFINITY);
@@ -190,8 +245,8 @@ mod tests {
         let guess = Orbit::guess(&alone, [-0.0282, 0.608, 0.183, -1.121], 1, false).expect("a guess");
         let (orbit, _) = guess.improved(&alone).expect("a motion");
         let wide = equations.at(Taylor::line(omega, half));
-        let (orbit, inverse) = orbit.widened(&wide).expect("a family");
-        let boxes = family(&wide, &orbit, &inverse).expect("a proof");
+        let (orbit, inverse, known) = orbit.widened(&wide).expect("a family");
+        let boxes = family(&wide, &orbit, &inverse, &known).expect("a proof");
         for end in [-1.0, 1.0] {
             let there = equations.at(Taylor::point(omega + half * end));
             let (own, _) = orbit.member(&there, end).and_then(|own| own.improved(&there)).expect("a motion");

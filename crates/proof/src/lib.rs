@@ -43,6 +43,7 @@ mod taylor;
 mod theorem;
 
 pub use band::{Band, Guesses, LeftOut, Piece, band};
+pub use elementary::cos_sin;
 pub use event::Event;
 pub use failure::Failure;
 pub use interval::Interval;

@@ -15,8 +15,8 @@ use std::f64::consts::TAU;
 const EVENTS: usize = 400;
 /// Most of Newton's iterations.
 const ITERATIONS: usize = 12;
-/// Those for the polynomials of a family, of 8 terms, with one more for the ways.
-const WIDENED: usize = 4;
+/// Those for the polynomials of a family, of 8 terms.
+const WIDENED: usize = 3;
 /// Of a guess, the largest gap that is taken for its rounding, relative to the states.
 const CLOSED: f64 = 1e-13;
 
@@ -196,18 +196,18 @@ impl Orbit {
     }
 
     /// The family of motions through this one for the frequencies of the equations, by Newton's iteration on polynomials, each of which
-    /// doubles the order; with the inverse of the derivatives.
+    /// doubles the order; with the inverse of the derivatives, and what the equations leave.
     ///
     /// # Errors
     /// A segment cannot be followed.
-    pub fn widened(mut self, equations: &Equations) -> Result<(Self, Inverse), Failure> {
+    pub fn widened(mut self, equations: &Equations) -> Result<(Self, Inverse, Residual), Failure> {
         for n in 0.. {
             let aim = |(k, node): (usize, &Node)| aimed(equations, node, &self.plans[k], self.crest(k));
             self.plans = self.nodes.iter().enumerate().map(aim).collect::<Result<_, _>>()?;
             let (known, inverse) = self.at_nodes(equations)?;
             let inverse = inverse.ok_or(Failure::Sequence)?;
             if n == WIDENED {
-                return Ok((self, inverse));
+                return Ok((self, inverse, known));
             }
             let change = inverse.times(&known.gaps);
             self = self.with(|place, state| state - change[place]);

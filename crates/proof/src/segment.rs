@@ -1,13 +1,13 @@
 //! From one event of a motion to the next: a flight to a wall or to a crest of the force, a contact to its end.
 
 use crate::crossing::{Crossing, Section, cross};
-use crate::equations::{Equations, Mode};
+use crate::equations::{Equations, Mode, at};
 use crate::event::Event;
 use crate::loss::{Factor, touch_down};
 use crate::number::{Family, Number, SPEED, STATE, State};
 use crate::range::Range;
 use crate::small::{Matrix, identity};
-use crate::step::{Piece, Quantity, States, step};
+use crate::step::{ORDER, Piece, Quantity, States, step};
 use crate::taylor::Taylor;
 use crate::{Failure, Interval};
 use retune_model::Side;
@@ -199,21 +199,22 @@ pub fn aimed(
     crest: Option<Interval>,
 ) -> Result<Plan, Failure> {
     let mode = mode_after(node.event);
-    let mut states = first(equations, node, &[Interval::ZERO; STATE]);
+    let mut state = first(equations, node, &[Interval::ZERO; STATE]).centre();
     let Some((last, steps)) = plan.steps.split_last() else { return Ok(plan.clone()) };
+    let series = |state: &Family| equations.series(mode, state, ORDER - 1);
     for &h in steps {
-        states = step(equations, mode, &states, h).ok_or_else(|| too_wide(h.mid(), &states))?.0;
+        let series = series(&state);
+        state = std::array::from_fn(|i| at(series.iter().map(|c| c[i]), h).polynomial());
     }
-    let graze = Failure::Graze { event: plan.end };
-    let (_, piece) = step(equations, mode, &states, *last).ok_or(graze.clone())?;
     let section = events(equations, mode, crest).into_iter().find(|(event, _)| *event == plan.end);
-    let range = Range::new(piece.series_of(&section.ok_or(graze)?.1));
-    let mut share = Taylor::point(1.0);
+    let (_, section) = section.ok_or(Failure::Graze { event: plan.end })?;
+    let range = Range::new(section.series(mode, &series(&state)));
+    let mut end = *last;
     for _ in 0..AIMED {
-        share = (share - range.at(share) * range.slope_at(share).reciprocal()).polynomial();
+        end = (end - range.at(end) * range.slope_at(end).reciprocal()).polynomial();
     }
     let sum = |steps: &[Taylor]| steps.iter().fold(Taylor::ZERO, |sum, h| sum + *h);
-    let all = (sum(steps) + *last * share) * sum(&plan.steps).reciprocal();
+    let all = (sum(steps) + end) * sum(&plan.steps).reciprocal();
     let steps = plan.steps.iter().map(|h| (*h * all).polynomial()).collect();
     Ok(Plan { steps, ..plan.clone() })
 }

@@ -12,6 +12,9 @@ use std::array;
 /// Where between the largest multiplier in doubles and 1 a bound on it is tried.
 const SHARP: [f64; 7] = [1e-6, 1e-4, 1e-2, 0.1, 0.5, 0.8, 0.95];
 
+/// Multipliers are not looked at if they are smaller.
+const LEAST: f64 = 1e-6;
+
 /// How often the range of a family's parameter is halved.
 const DEPTH: u32 = 6;
 
@@ -72,22 +75,27 @@ fn times(a: &Section, b: &Section) -> Section {
 
 /// Whether all multipliers of all matrices are below 1, or one of each is above.
 fn stability_of(segments: &[Section]) -> Stability {
-    match are_below(segments, 1.0) {
-        None => Stability::Open,
-        Some(false) => Stability::Unstable,
-        Some(true) => {
-            let product = segments.iter().fold(Matrix4::identity(), |product, m| middle(m) * product);
-            let largest = product.complex_eigenvalues().iter().fold(0.0, |most, x| f64::max(most, x.norm()));
-            // The bound on the multipliers is the product of those on the segments.
-            let tried = SHARP.iter().filter_map(|share| {
-                let bound = (largest + share * (1.0 - largest)).powf(1.0 / segments.len() as f64);
-                let power =
-                    segments.iter().fold(Interval::ONE, |power, _| power * Interval::point(bound)).hi();
-                (power < 1.0 && are_below(segments, bound) == Some(true)).then_some(power)
-            });
-            Stability::Stable(tried.into_iter().next().unwrap_or(1.0))
-        }
+    let product = segments.iter().fold(Matrix4::identity(), |product, m| middle(m) * product);
+    let largest = product.complex_eigenvalues().iter().fold(0.0, |most, x| f64::max(most, x.norm()));
+    // A bound on the multipliers is the product of those on the segments.
+    let share = |x: f64| x.max(LEAST).powf(1.0 / segments.len() as f64);
+    if largest > 1.0 {
+        let above = share(largest.sqrt()).max(1.0);
+        let is_unstable = are_below(segments, above, above) == Some(false);
+        return if is_unstable { Stability::Unstable } else { Stability::Open };
     }
+    // Half-way between the multipliers and the bound the forms fall most.
+    let is_stable =
+        |bound: f64| are_below(segments, share(bound), share((largest * bound).sqrt())) == Some(true);
+    if !is_stable(1.0) {
+        return Stability::Open;
+    }
+    let power = |bound: f64| {
+        segments.iter().fold(Interval::ONE, |power, _| power * Interval::point(share(bound))).hi()
+    };
+    let tried = SHARP.iter().map(|to_one| largest + to_one * (1.0 - largest));
+    let found = tried.filter(|bound| is_stable(*bound)).map(power).find(|bound| *bound < 1.0);
+    Stability::Stable(found.unwrap_or(1.0))
 }
 
 fn middle(matrix: &Section) -> Matrix4<f64> {
@@ -99,16 +107,17 @@ fn points(matrix: &Matrix4<f64>) -> Section {
 }
 
 /// Whether all multipliers of the product of so many matrices, each over `bound`, are below 1 (true), or one is above (false); none if neither is proven.
+/// The forms that show it are those of the matrices over `between`.
 ///
 /// Let symmetric `V₀, …, Vₘ = V₀` have positive definite `Vₖ - Nₖᵀ Vₖ₊₁ Nₖ`. Then `V₀ - Nᵀ V₀ N` is positive definite for the product `N` too, so `xᵀ V₀ x`
 /// falls along `x, N x, N² x, …`, and no multiplier has the size 1, as `v* V₀ v` would not fall for its vector. If `V₀` is positive definite
 /// itself, all are below 1 (P. Stein, 1952). If `xᵀ V₀ x` is negative for some `x`, it stays so and falls for ever: `Nᵏ x` does not tend to
 /// zero, and one is above 1.
-fn are_below(segments: &[Section], bound: f64) -> Option<bool> {
+fn are_below(segments: &[Section], bound: f64, between: f64) -> Option<bool> {
     let over = Taylor::from(Interval::ONE / Interval::point(bound));
     let scaled: Vec<Section> = segments.iter().map(|m| m.map(|row| row.map(|x| x * over))).collect();
     // Any symmetric matrices will do that pass.
-    let forms = forms(&scaled.iter().map(middle).collect::<Vec<_>>())?;
+    let forms = forms(&segments.iter().map(|m| middle(m) / between).collect::<Vec<_>>())?;
     if are_falling(&scaled, &forms) { is_positive(&forms[0]) } else { None }
 }
 
@@ -133,14 +142,25 @@ fn symmetric(a: Matrix4<f64>) -> Matrix4<f64> {
     (a + a.transpose()) * 0.5
 }
 
-/// Whether all `Vₖ - Nₖᵀ Vₖ₊₁ Nₖ` are positive definite.
+/// Whether all `Vₖ - Nₖᵀ Vₖ₊₁ Nₖ` are positive definite: seen in coordinates `C` in which they are near the identity, as they are if `Cᵀ (…) C` is,
+/// which is zero on what `C` makes zero.
 fn are_falling(scaled: &[Section], forms: &[Matrix4<f64>]) -> bool {
     scaled.iter().enumerate().all(|(k, n)| {
-        let turned: Section = array::from_fn(|i| array::from_fn(|j| n[j][i]));
-        let (v, next) = (points(&forms[k]), points(&forms[(k + 1) % forms.len()]));
-        let after = times(&times(&turned, &next), n);
-        is_positive_definite(&array::from_fn(|i| array::from_fn(|j| v[i][j] - after[i][j])))
+        let (v, next) = (&forms[k], &forms[(k + 1) % forms.len()]);
+        let falls = v - middle(n).transpose() * next * middle(n);
+        let Some(c) = symmetric(falls).cholesky().and_then(|root| root.l().transpose().try_inverse()) else {
+            return false;
+        };
+        let before = seen(&points(v), &points(&c));
+        let after = seen(&points(next), &times(n, &points(&c)));
+        is_positive_definite(&array::from_fn(|i| array::from_fn(|j| before[i][j] - after[i][j])))
     })
+}
+
+/// A form in other coordinates, `Cᵀ V C`.
+fn seen(form: &Section, c: &Section) -> Section {
+    let turned: Section = array::from_fn(|i| array::from_fn(|j| c[j][i]));
+    times(&times(&turned, form), c)
 }
 
 /// Whether a symmetric matrix is positive definite (true), or negative in some direction (false); none if neither is proven.

@@ -203,6 +203,18 @@ fn invariant_a_piece_of_a_band_holds_the_motions_at_its_frequencies() {
     }
 }
 
+/// Where nothing is guessed, the motion is proven from beyond it.
+#[test]
+fn invariant_a_motion_is_followed_to_both_sides_of_its_guess() {
+    let guess = |omega| (omega > 6.625).then_some((WORST.1, 1));
+    let found = band(&tuned(6.6), [6.618, 6.64], 226.0, &guess).expect("a scene");
+    assert!(found.left_out.is_empty() && found.pieces.len() < 5, "{found:?}");
+    let ends: Vec<f64> = found.pieces.iter().flat_map(|piece| piece.omega).collect();
+    assert_eq!((ends[0], ends[ends.len() - 1]), (6.618, 6.64));
+    assert!(ends[1..ends.len() - 1].chunks(2).all(|two| two[0] == two[1]), "{ends:?}");
+    assert!(found.pieces.iter().all(|piece| piece.periods == 1 && piece.impacts == "S"), "{found:?}");
+}
+
 /// What is beyond the goal, or has no guess, is left out with its reason, and no more than that.
 #[test]
 fn contract_what_is_not_proven_of_a_band_is_named() {

@@ -1,0 +1,111 @@
+"""Removes each rounding and each remainder of crates/proof in turn, and sees whether one of its tests fails: results/robustness/proof-mutants.md.
+
+python3 tests/proof_mutants.py [WORD ...]: only those whose words hold one of these.
+"""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).parent.parent
+COPY = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "proof-mutants"
+OUT = ROOT / "results" / "robustness" / "proof-mutants.md"
+# Of a test that does not end.
+SECONDS = 900
+
+# What is removed: in words, in which file, which text, and what stands there instead.
+MUTANTS = [
+    ("rounding of lower bounds", "interval", "{ f64::NEG_INFINITY } else { x.next_down() }", "{ f64::NEG_INFINITY } else { x }"),
+    ("rounding of upper bounds", "interval", "{ f64::INFINITY } else { x.next_up() }", "{ f64::INFINITY } else { x }"),
+    ("rounding of the least square", "interval", "below(a.min(b) * a.min(b)).max(0.0)", "(a.min(b) * a.min(b)).max(0.0)"),
+    ("rounding of the least root", "interval", "below(self.lo.sqrt()).max(0.0)", "self.lo.sqrt()"),
+    ("unit in the last place of decimals", "interval", "Self::new(x.next_down(), x.next_up())", "Self::point(x)"),
+    ("pi/2 beyond its double", "elementary", "Interval::new(FRAC_PI_2, FRAC_PI_2.next_up())", "Interval::point(FRAC_PI_2)"),
+    ("width of an angle", "elementary", "(value + away).meet(all)", "value.meet(all)"),
+    ("remainder of sine and cosine", "elementary", "Interval::around_zero(left_out), |sum", "Interval::ZERO, |sum"),
+    ("rounding of a sum of polynomials", "taylor", "self.rest + other.rest + UNIT * size", "self.rest + other.rest"),
+    ("rounding of a product of polynomials", "taylor", "beyond + rounded + a", "beyond + a"),
+    ("what a product cuts off", "taylor", "beyond + rounded + a", "rounded + a"),
+    ("rests in a product", "taylor", " + a * other.rest + b * self.rest + self.rest * other.rest", ""),
+    ("what a reciprocal leaves out", "taylor", "bound(p.size() * (off / (1.0 - off)))", "0.0"),
+    ("what a series of the sine leaves out", "taylor", "bound(sum.rest + left_out)", "sum.rest"),
+    ("rest on a part of a family", "taylor", "bound(all.rest + self.rest)", "all.rest"),
+    ("remainder of a step", "step", "at(from_middle.iter().map(|c| c[i]), h) + Taylor::from(left_out[i])", "at(from_middle.iter().map(|c| c[i]), h)"),
+    ("remainder of its derivatives", "step", "at(series.iter().map(|c| c[i].by[j]), h) + Taylor::from(by_left_out[i][j])", "at(series.iter().map(|c| c[i].by[j]), h)"),
+    ("rounding of the centre", "step", "spread[i] = spread[i] + column[i] * states.spread[j]", "spread[i] = column[i] * Interval::ZERO"),
+    ("box about the centre", "step", "plus(&self.centre(), &std::array::from_fn(moved))", "{ let _ = moved; self.centre() }"),
+    ("way of a step within its box", "step", "if (0..STATE).all(|i| next[i].is_in(e[i]))", "if next[0].is_bounded()"),
+    ("frame that is orthogonal to rounding", "small", "Some(b.map(|b| b + off))", "{ let _ = off; Some(b) }"),
+    ("gaps during a segment", "segment", "if !Range::new(piece.series_of(section)).is_positive(starts, ends)", "if false && starts && ends"),
+    ("gaps about its end", "segment", "if !(if section.is_rising { off.is_negative() } else { off.is_positive() })", "if off.hi().is_nan()"),
+    ("force of a contact that may end", "segment", "&& !Range::new(piece.series_of(&Pushing(lambda))).is_positive(false, false)", "&& lambda.lo().is_nan()"),
+    ("sign of the slope at a crossing", "crossing", "if section.is_rising { slope.hull().is_positive() } else { slope.hull().is_negative() }", "slope.hull().is_positive() || slope.hull().is_negative()"),
+    ("time of a crossing by the state", "crossing", "by[i][j] - slopes[i] * per_slope * by[section.index][j]", "{ let _ = (slopes, per_slope); by[i][j] }"),
+    ("way to a crossing within its time", "crossing", "if next.hull().is_in(tried)", "if next.hull().is_bounded()"),
+    ("slope of a range", "range", "self.value(middle) + self.slope(t) * (t - Interval::point(middle))", "self.value(middle)"),
+    ("last term of a range", "step", "series.extend(last.get(order).map(|last| Taylor::from(*last)));", "let _ = last;"),
+    ("whether a motion reaches a value", "range", "if t <= sure", "if sure >= 0.0"),
+    ("last term of Krawczyk's operator", "theorem", "terms.fold(-moved[row].hull(), |sum, term| sum + term)", "{ drop(terms); -moved[row].hull() }"),
+    ("box that is mapped into itself", "theorem", "all(|i| image[k][i].is_inside(away[k][i]))", "all(|i| image[k][i].is_bounded() && away[k][i].is_bounded())"),
+    ("sign of a form", "stability", "== Some(true);", ".is_some();"),
+    ("whether forms fall", "stability", "if are_falling(&scaled, &forms) {", "if are_falling(&scaled, &forms) || true {"),
+    ("pivots of a form", "stability", "if !a[k][k].is_positive()", "if a[k][k].is_negative()"),
+    ("rounding of chi", "loss", "let [low, high] = [low - off * 16.0 * low, high + off * 16.0 * high];\n        let holds = ", "let [low, high] = [low, low * (1.0 + 0.0 * off)];\n        let holds = true || "),
+]
+
+
+def copied():
+    """The workspace without what no test of the crate needs."""
+    COPY.mkdir(parents=True, exist_ok=True)
+    for name in ["crates", "tests/reference"]:
+        shutil.rmtree(COPY / name, ignore_errors=True)
+        shutil.copytree(ROOT / name, COPY / name)
+    for name in ["Cargo.toml", "Cargo.lock", "README.md"]:
+        shutil.copy(ROOT / name, COPY / name)
+
+
+def tested():
+    """The first test that fails; none if all pass."""
+    command = ["cargo", "test", "--quiet", "--package", "retune-proof", "--lib", "--tests"]
+    environment = {**os.environ, "CARGO_TARGET_DIR": str(COPY / "target"), "RUSTFLAGS": "--cap-lints allow"}
+    try:
+        run = subprocess.run(command, cwd=COPY, env=environment, capture_output=True, text=True, timeout=SECONDS)
+    except subprocess.TimeoutExpired:
+        return "no end"
+    if run.returncode == 0:
+        return None
+    failed = [line.split(" ")[1] for line in run.stdout.splitlines() if line.startswith("---- ")]
+    if not failed:
+        sys.exit(f"no test ran:\n{run.stdout[-2000:]}{run.stderr[-2000:]}")
+    return failed[0]
+
+
+def main():
+    copied()
+    if (failed := tested()) is not None:
+        sys.exit(f"a test fails as it is: {failed}")
+    rows, missed = [], []
+    chosen = [m for m in MUTANTS if not sys.argv[1:] or any(word in m[0] for word in sys.argv[1:])]
+    for words, name, before, after in chosen:
+        file = COPY / "crates" / "proof" / "src" / f"{name}.rs"
+        text = file.read_text()
+        if text.count(before) != 1:
+            sys.exit(f"{words}: {name}.rs has this {text.count(before)} times: {before}")
+        file.write_text(text.replace(before, after))
+        failed = tested()
+        file.write_text(text)
+        missed += [words] if failed is None else []
+        rows.append(f"| {words} | {name}.rs | {failed or 'none'} |")
+        print(rows[-1], flush=True)
+    if len(chosen) == len(MUTANTS):
+        head = (
+            "# Mutants of the proof\n\n`just lab proof-mutants` removed each rounding, remainder and check of `crates/proof` in turn; a test that then fails:\n\n"
+            f"{len(rows) - len(missed)} of {len(rows)} are caught.\n\n| removed | in | caught by |\n| --- | --- | --- |\n"
+        )
+        OUT.write_text(head + "\n".join(rows) + "\n")
+
+
+if __name__ == "__main__":
+    main()
