@@ -71,7 +71,9 @@ fn done(job: Job, request: &Request, monitor: &Monitor) -> Result<String, Fault>
         Job::Design(specification) => {
             drop(design::design(&specification.within("design").requirements()?, request, monitor)?);
         }
-        Job::Fronts => drop(fronts::fronts(request, monitor)?),
+        Job::Fronts => {
+            fronts::fronts(request, monitor)?;
+        }
         Job::Losses => drop(losses::losses(request, monitor)?),
         Job::Merge { parts } => {
             tune::merge::merge(request, &parts, monitor)?;

@@ -101,7 +101,7 @@ pub fn dashpots(count: u64) -> Hunt {
                 worst = 0.0;
             }
             if numbers.d == 1.0 {
-                let mut free = scene.clone();
+                let mut free = scene;
                 free.damper.iter_mut().for_each(|damper| damper.contact = None);
                 let found =
                     simulate(&free, Window { from: 0.0, to: TO }, &Settings::default()).expect("a run");
