@@ -1,12 +1,11 @@
 //! Strong dashpots: the fast part of the motion is left out once it has decayed.
 
-use retune_model::Coupled;
 use retune_solver::{Settings, Window, simulate};
 use retune_testkit::scenes::{Numbers, SSVI};
 
 /// E1max by the eigenvectors of the linear system in 40 digits: `tests/reference/dashpots.py`.
 const EXACT: [(f64, f64); 3] =
-    [(1e4, 911.441197593448218), (1e5, 941.939579210149074), (1e7, 945.466948218196225)];
+    [(1e4, 911.441_197_593_448_2), (1e5, 941.939_579_210_149_1), (1e7, 945.466_948_218_196_2)];
 
 #[test]
 fn exact_a_strong_dashpot_in_long_steps() {
