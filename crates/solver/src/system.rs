@@ -58,10 +58,8 @@ pub struct Linear<const N: usize> {
     pub columns: [[f64; N]; N],
     /// `b`.
     pub input: [f64; N],
-    /// What the partner of the force does: nothing, but where a fast part of the motion follows the force without delay.
-    pub partner: [f64; N],
-    /// Whether they leave out a fast part of the motion, which has decayed.
-    pub reduced: bool,
+    /// What the partner of the force does where a fast part of the motion has decayed and is left out: that part follows the force.
+    pub partner: Option<[f64; N]>,
     /// The state of rest.
     pub origin: [f64; N],
     /// ω, rad/s, of `df/dt = -ω s`, with the force `f` and its partner `s`.
@@ -80,8 +78,7 @@ pub(crate) fn held(system: &Coupled) -> Linear<4> {
     Linear {
         columns: columns(&a),
         input,
-        partner: [0.0; 4],
-        reduced: false,
+        partner: None,
         origin: [0.0; 4],
         frequency,
         returns,
@@ -139,8 +136,7 @@ impl LinearSystem<2> for Bare {
         Linear {
             columns: columns(&a),
             input,
-            partner: [0.0; 2],
-            reduced: false,
+            partner: None,
             origin: self.rest(),
             frequency,
             returns,
@@ -181,8 +177,7 @@ impl LinearSystem<4> for Coupled {
         Linear {
             columns: columns(&a),
             input,
-            partner: [0.0; 4],
-            reduced: false,
+            partner: None,
             origin: self.rest(),
             frequency,
             returns,

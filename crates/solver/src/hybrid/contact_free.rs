@@ -167,6 +167,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
         let Some(Reduced { flow, .. }) = self.reduced.as_deref() else { return Ok(()) };
         let growth = flow.step() * self.system.energy_norm_growth();
         let mut clock = StepClock::new(self.now.t, flow.step());
+        observer.seam();
         while self.now.t < to && !observer.satisfied() {
             let (now, length) = (self.now, flow.step().min(to - self.now.t));
             let motion = flow.expand(now.excitation, &now.y);

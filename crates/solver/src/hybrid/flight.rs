@@ -134,6 +134,7 @@ impl Hybrid<'_> {
         let (flow, whole) = (&reduced.flow.flow, reduced.flow.flow.step());
         let growth = LANES as f64 * whole * self.system.energy_norm_growth();
         let mut clock = StepClock::new(now.t, whole);
+        observer.seam();
         loop {
             let energy = self.system.energy_norm(&now.y) + growth;
             if !energy.is_finite() {

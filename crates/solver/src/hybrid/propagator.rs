@@ -6,7 +6,7 @@ use crate::contact::collocation::response::Collisions;
 use crate::linear::flow::{Expansion, Flow};
 use crate::linear::pieces::in_steps;
 use crate::linear::reduced::Reduced;
-use crate::motion::form::derivative_bounds;
+use crate::motion::form::{derivative_bounds, derivative_bounds_of};
 use crate::motion::knot::Knot;
 use crate::motion::polynomial::{BLOCKS, Polynomial};
 use crate::response::Work;
@@ -87,7 +87,7 @@ pub(super) struct ReducedFlight {
 impl ReducedFlight {
     fn of(system: &Coupled, whole: &Flow<4>, longest: f64) -> Option<Self> {
         let flow = Reduced::of(whole, longest)?;
-        let fourth = flow.derivative_bounds::<_, 5>(system, STROKE)[4];
+        let fourth = derivative_bounds_of::<_, 4, 5>(system, flow.flow.linear(), STROKE)[4];
         Some(Self { flow, fourth })
     }
 }

@@ -207,11 +207,11 @@ impl<const N: usize> Flow<N> {
         let mut force = [excitation[0]; 3];
         let mut now = excitation;
         for order in 1..4 {
-            let previous = states[order - 1];
-            states[order] = each(|i| {
-                let free: f64 = columns.iter().zip(previous).map(|(column, d)| column[i] * d).sum();
-                free + input[i] * now[0] + partner[i] * now[1]
-            });
+            let free = applied(columns, &states[order - 1]);
+            states[order] = each(|i| free[i] + input[i] * now[0]);
+            if let Some(partner) = partner {
+                (0..N).for_each(|i| states[order][i] += partner[i] * now[1]);
+            }
             now = [-frequency * now[1], returns * now[0]];
             if order < 3 {
                 force[order] = now[0];
@@ -243,7 +243,7 @@ impl<const N: usize> Flow<N> {
 
     /// Whether it leaves out a fast part of the motion, which has decayed.
     pub fn is_reduced(&self) -> bool {
-        self.linear.reduced
+        self.linear.partner.is_some()
     }
 
     /// The flow's numbers.
@@ -253,15 +253,12 @@ impl<const N: usize> Flow<N> {
 
     /// A deviation from the origin after `steps` whole steps without force, `Φ^steps y`, by repeated squaring.
     pub fn decay(&self, mut steps: u64, mut deviation: [f64; N]) -> [f64; N] {
-        let apply = |phi: &[[f64; N]; N], y: &[f64; N]| -> [f64; N] {
-            std::array::from_fn(|i| (0..N).map(|j| phi[j][i] * y[j]).sum())
-        };
         let mut power = self.phi.map(|column| column.map(|lanes| lanes.to_array()[0]));
         while steps > 0 {
             if steps & 1 == 1 {
-                deviation = apply(&power, &deviation);
+                deviation = applied(&power, &deviation);
             }
-            power = power.map(|column| apply(&power, &column));
+            power = power.map(|column| applied(&power, &column));
             steps >>= 1;
         }
         deviation
@@ -306,6 +303,11 @@ impl<const N: usize> Flow<N> {
     }
 }
 
+/// A matrix, by its columns, times a vector.
+pub(super) fn applied<const N: usize>(columns: &[[f64; N]; N], y: &[f64; N]) -> [f64; N] {
+    std::array::from_fn(|i| (0..N).map(|j| columns[j][i] * y[j]).sum())
+}
+
 /// Taylor series of the deviation from the origin: `c_{k+1} = (A c_k + b f_k) / (k + 1)`, `f_{k+1} = ω J f_k / (k + 1)`, with `J` without its
 /// second row where the force is linear in time.
 fn series<const N: usize>(
@@ -321,7 +323,7 @@ fn series<const N: usize>(
         for i in 0..N {
             next[i] = input[i] * excitation[0];
         }
-        if linear.reduced {
+        if let Some(partner) = partner {
             for i in 0..N {
                 next[i] += partner[i] * excitation[1];
             }

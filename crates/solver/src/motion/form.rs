@@ -62,7 +62,7 @@ pub fn derivative_bounds_of<S: LinearSystem<N>, const N: usize, const K: usize>(
     std::array::from_fn(|_| {
         let bound = [system.dual_energy_norm(&row), amplitude * forced];
         let felt = dot(&row, &linear.input);
-        let felt = if linear.reduced { felt.hypot(dot(&row, &linear.partner)) } else { felt.abs() };
+        let felt = linear.partner.map_or(felt.abs(), |partner| felt.hypot(dot(&row, &partner)));
         forced = if linear.returns == 0.0 {
             felt + if slope > 0.0 { slope / amplitude * latest } else { 0.0 }
         } else {

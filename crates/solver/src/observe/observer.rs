@@ -84,7 +84,8 @@ pub trait Observer<const N: usize> {
     fn follows_losses(&self) -> bool {
         false
     }
-    /// The force or its slope jumps between two segments: rates before are not those after.
+    /// The force or its slope jumps between two segments, or a fast part of the motion is left out from here on: rates before are not
+    /// those after.
     fn seam(&mut self) {}
     /// Whether the run may stop here. It stops as soon as one of several observers says so.
     fn satisfied(&self) -> bool {

@@ -131,6 +131,9 @@ impl Observer<4> for Blocks<'_> {
     fn impact(&mut self, impact: &Impact<4>) {
         self.now.impact(impact);
     }
+    fn seam(&mut self) {
+        self.now.seam();
+    }
     fn satisfied(&self) -> bool {
         self.settled.is_some()
     }
