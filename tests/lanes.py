@@ -16,7 +16,7 @@ import sys
 import tempfile
 
 # The bench that counts instructions, for a processor that valgrind knows.
-BUILD = "cargo bench --target-dir target/instructions --quiet --package retune-solver --bench instructions --no-run --message-format json"
+BUILD = "cargo bench --target-dir target/instructions --quiet --package retune-lab --bench instructions --no-run --message-format json"
 SCENES = ["SSVI, Table 2", "SSVI, Table 1 row 3"]
 # By their place among those of the benchmark.
 RTOLS = {"1e-6": 0, "1e-9": 3, "1e-10": 4}
@@ -30,7 +30,8 @@ def program():
     """The bench as it is built."""
     environment = {**os.environ, "RUSTFLAGS": "-C target-cpu=x86-64-v3"}
     built = subprocess.run(BUILD.split(), env=environment, text=True, stdout=subprocess.PIPE, check=True).stdout
-    return next(m["executable"] for m in map(json.loads, built.splitlines()) if m.get("executable"))
+    messages = map(json.loads, built.splitlines())
+    return next(m["executable"] for m in messages if m.get("executable") and m["target"]["name"] == "instructions")
 
 
 def kind(name, operands):

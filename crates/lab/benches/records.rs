@@ -1,5 +1,5 @@
 //! A run of 40 s under a record of 4001 samples beside the same length under a harmonic force, with about as many impacts: the least time of
-//! many, of E1max. `cargo bench -p retune-solver --bench records`.
+//! many, of E1max. `just lab bench-records`.
 #![expect(clippy::print_stdout, reason = "a measurement is printed")]
 
 use retune_model::{Of, Samples, Scene};
