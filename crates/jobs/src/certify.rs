@@ -109,7 +109,7 @@ fn damper_of(study: &Study) -> Result<&Damper, Error> {
     })
 }
 
-/// Refuses the results of a search in `out` whose design breaks the limits of its study.
+/// Refuses the results of a search in `out` whose design breaks the limits of its study by [`Error::Infeasible`].
 pub fn check_limits_in(out: &Path, study: &str) -> Result<(), Error> {
     let text = std::fs::read_to_string(out.join(FILE)).unwrap_or_default();
     let said: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();

@@ -133,7 +133,7 @@ impl Designs {
         lines.join("\n")
     }
 
-    /// Refuses a table with a design that breaks the limits of its study.
+    /// Refuses a table with a design that breaks the limits of its study by [`Error::Infeasible`].
     ///
     /// # Errors
     /// [`Error::Infeasible`], of the first search.

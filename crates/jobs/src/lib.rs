@@ -3,7 +3,7 @@
 //! A job takes a study (`retune_study`), computes with `retune_optim` and `retune_dynamics`, keeps its files in a directory of
 //! results (`retune_store`), reports its progress to an [`Observer`], and returns its result. Nothing here prints.
 //!
-//! [`tune()`] searches the best design of a study; [`certify`] gives the error bar, the sensitivity and the motion of a design;
+//! [`mod@tune`] searches the best design of a study; [`certify`] gives the error bar, the sensitivity and the motion of a design;
 //! [`table2`] makes several searches and compares them, as the jobs of this crate do; [`verify`] checks results by computing them
 //! again; [`prove`] proves one periodic motion; [`simulate`] makes one run, [`sweep`] one at each value of a parameter; [`evaluate`] evaluates designs of other programs.
 //!

@@ -97,18 +97,12 @@ mod tests {
     use super::*;
     use crate::number::STATE;
     use crate::small::identity;
-    use retune_model::{Scene, Side};
+    use retune_model::Side;
 
     /// A wall is come to from its own side: with the other sign of the speed, or with either in one box, nothing is proven.
     #[test]
     fn contract_a_crossing_has_a_slope_of_the_right_sign() {
-        let text = r#"{
-            "primary": { "m1": 1000, "c1": 452, "k1": 39500 }, "forcing": { "P": 800, "omega": 6.28 },
-            "damper": { "m2": 60, "k2": 215, "c2": 232, "D": 0.06, "C": 0.36, "contact": { "R": 2, "q": 0.318,
-                "E1": 2.1e11, "nu1": 0.3, "E2": 2.21e7, "nu2": 0.4, "E3": 2.1e11, "nu3": 0.3, "E4": 2.05e7, "nu4": 0.4 } }
-        }"#;
-        let scene: Scene = serde_json::from_str(text).expect("a scene");
-        let equations = Equations::new(&scene).expect("equations");
+        let equations = crate::step::tests::scene();
         for (side, sign) in [(Side::Obstacle, 1.0), (Side::Primary, -1.0)] {
             let value = equations.wall(side).expect("a wall");
             let section = Section { index: 0, value, is_rising: sign > 0.0 };

@@ -189,11 +189,12 @@ pub trait Quantity {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use retune_model::{Scene, Side};
 
-    fn scene() -> Equations {
+    /// The paper's tuned damper.
+    pub(crate) fn scene() -> Equations {
         let text = r#"{
             "primary": { "m1": 1000, "c1": 452, "k1": 39500 }, "forcing": { "P": 800, "omega": 6.28 },
             "damper": { "m2": 60, "k2": 215, "c2": 232, "D": 0.06, "C": 0.36, "contact": { "R": 2, "q": 0.318,

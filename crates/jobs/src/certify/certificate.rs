@@ -121,7 +121,7 @@ impl Certificate {
         matches!(self.judged.verdict, Some(Verdict::Robust | Verdict::FromRest | Verdict::Edge))
     }
 
-    /// Refuses a design that breaks the limits of its study, for which there is no verdict.
+    /// Refuses a design that breaks the limits of its study, for which there is no verdict, by [`Error::Infeasible`].
     pub fn check_limits(&self) -> Result<(), Error> {
         match self.judged.verdict {
             Some(_) => Ok(()),

@@ -74,7 +74,7 @@ impl Comparison {
         std::iter::once(&self.none).chain(self.dampers())
     }
 
-    /// Refuses a comparison of which no damper keeps the limits.
+    /// Refuses a comparison of which no damper keeps the limits by [`Error::Infeasible`].
     pub fn check_limits(&self) -> Result<(), Error> {
         match self.choice {
             Some(_) => Ok(()),

@@ -187,7 +187,7 @@ impl Optimum {
         self.certificate.reason()
     }
 
-    /// Refuses a design that breaks the limits of its study.
+    /// Refuses a design that breaks the limits of its study by [`Error::Infeasible`].
     pub fn check_limits(&self) -> Result<(), Error> {
         self.certificate.check_limits()
     }
