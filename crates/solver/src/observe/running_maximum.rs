@@ -60,6 +60,13 @@ impl<Q> RunningMaximum<Q> {
     }
 }
 
+/// How far a quantity may rise above the larger of two values, `t` apart, that differ by `change`, where its second derivative is at
+/// most `m` and `bend` is `m t²`: inside, where its slope is zero, it exceeds a value at the distance `s` by at most `m s² / 2`, so that both
+/// values allow `m t² / 8 (1 - 2 change / (m t²))²`, and nothing once the change leaves no room for a zero of the slope.
+fn rise_by_curvature(change: f64, bend: f64) -> f64 {
+    if 2.0 * change >= bend { 0.0 } else { 0.125 * bend * (1.0 - 2.0 * change / bend).powi(2) }
+}
+
 impl<const N: usize, Q> Observer<N> for RunningMaximum<Q>
 where
     Q: Quantity<N>,
@@ -89,9 +96,9 @@ where
         self.search.begin(segment, &from, &to, remainder);
     }
 
-    /// Searches only where the record could be broken, by the values at both ends or between knots: a quantity whose second derivative
-    /// is at most `m` rises above the larger of two values `t` seconds apart by at most `m t² / 8`. A quantity that contact forces
-    /// enter has no such `m`, but a first derivative of at most some `m`: it rises above the mean of two values by at most `m t / 2`.
+    /// Searches only where the record could be broken, by the values at both ends or between knots (see [`rise_by_curvature`]). A quantity
+    /// that contact forces enter has no second derivative, but a first of at most some `m`: it rises above the mean of two values `t`
+    /// seconds apart by at most `m t / 2`.
     #[inline(always)]
     fn path(&mut self, path: &impl Path<N>) {
         let quantity = &self.search.quantity;
@@ -120,7 +127,8 @@ where
         let largest = values[..count].iter().fold(f64::NEG_INFINITY, |largest, value| largest.max(*value));
         for piece in 0..count - 1 {
             let h = times[piece + 1] - times[piece];
-            let rise = (0.125 * second * h * h).min(slope * h);
+            let change = (values[piece + 1] - values[piece]).abs();
+            let rise = rise_by_curvature(change, second * h * h).min(slope * h);
             let most = values[piece].max(values[piece + 1]) + rise;
             let dropped = most <= self.search.record.value || most < largest;
             if !dropped {

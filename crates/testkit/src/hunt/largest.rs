@@ -248,7 +248,7 @@ fn compare(scene: &Scene, from: f64) -> Option<([f64; 11], Response)> {
 }
 
 /// By how much the hybrid and DOP853 may differ.
-const ALIKE: f64 = 1e-8;
+const ALIKE: f64 = 1e-9;
 
 fn differences(a: &Response, b: &Response) -> [f64; 11] {
     let force = b.force_max[0].max(b.force_max[1]).max(1.0);
@@ -344,7 +344,7 @@ pub fn beside_dop853(scenes: Scenes, count: u64) -> Hunt {
     let faults: Vec<_> = compared.iter().filter(|(_, found, _)| found.iter().any(|d| *d > ALIKE)).collect();
     let mut hunt = Hunt::default();
     hunt.row(format!(
-        "| {what}, the motion predictable | {} of {count} | {contact_scenes} | {impacts} impacts | 1e-8 | {} |",
+        "| {what}, the motion predictable | {} of {count} | {contact_scenes} | {impacts} impacts | 1e-9 | {} |",
         compared.len(),
         faults.len()
     ));

@@ -22,8 +22,9 @@ static DAMPING: [OnceLock<LossyRules>; STEPS] = [const { OnceLock::new() }; STEP
 
 /// The rules near an undisturbed collision, from few nodes to many.
 pub struct LossyRules {
-    pub few: LossyRule<16, 4>,
-    pub some: LossyRule<20, 5>,
+    pub few: LossyRule<12, 3>,
+    pub some: LossyRule<16, 4>,
+    pub more: LossyRule<20, 5>,
     pub many: LossyRule<24, 6>,
 }
 
@@ -33,6 +34,7 @@ impl LossyRules {
         Self {
             few: LossyRule::new(law, &undisturbed),
             some: LossyRule::new(law, &undisturbed),
+            more: LossyRule::new(law, &undisturbed),
             many: LossyRule::new(law, &undisturbed),
         }
     }

@@ -213,7 +213,8 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
             from: &from,
             slope: &derivative,
             length,
-            steps: 2, // nodes are about as far apart as the steps that `rtol` asks for, and farther near the ends
+            // Nodes are about as far apart as the steps that `rtol` asks for, and farther near the ends; those of lossy contacts are closer.
+            steps: if self.of.loss.is_some() { 1 } else { 2 },
             ends,
             energy: f64::INFINITY,
             bounds: Default::default(),

@@ -139,7 +139,7 @@ mod tests {
         let loss = Loss::of(&equations).expect("a loss");
         let (rules, _) = loss.rules(1.0).expect("rules");
         assert!(
-            [rules.few.law.is_none(), rules.some.law.is_none(), rules.many.law.is_none()].contains(&true)
+            [rules.some.law.is_none(), rules.more.law.is_none(), rules.many.law.is_none()].contains(&true)
         );
     }
 }

@@ -86,16 +86,21 @@ impl Collisions {
         if speed.is_nan() || speed <= 0.0 {
             return None;
         }
-        let (LossyRules { few, some, many }, law) = loss.rules(speed)?;
+        let (LossyRules { few, some, more, many }, law) = loss.rules(speed)?;
         // At these tolerances common contacts pass the error estimate of the rule.
-        let (few_suffice, some_suffice) = match law {
+        let (some_suffice, more_suffice) = match law {
             UnitLaw::Damping(_) => (self.rtol >= 1e-10, self.rtol >= 1e-12),
             UnitLaw::Restoring(_) => (self.rtol >= 1e-9, self.rtol >= 1e-11),
         };
-        if few_suffice && let Some(end) = self.solve_lossy(few, &law, flow, &touch, to, observer) {
+        if self.rtol >= 1e-7
+            && let Some(end) = self.solve_lossy(few, &law, flow, &touch, to, observer)
+        {
             return Some(end);
         }
         if some_suffice && let Some(end) = self.solve_lossy(some, &law, flow, &touch, to, observer) {
+            return Some(end);
+        }
+        if more_suffice && let Some(end) = self.solve_lossy(more, &law, flow, &touch, to, observer) {
             return Some(end);
         }
         self.solve_lossy(many, &law, flow, &touch, to, observer)
