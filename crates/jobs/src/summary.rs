@@ -267,7 +267,7 @@ impl std::fmt::Display for Summary {
                 Source::Imbalance(_) => "that force / (imbalance omega²)",
                 Source::Base(_) => "x1max / base",
                 Source::BaseAcceleration(_) => "x1max omega² / base_acceleration",
-                _ => "that force / P",
+                Source::Force(_) | Source::Decay(_) | Source::History(_) => "that force / P",
             };
             writeln!(f, "transmiss.  {share:<12.5} the transmissibility: {by}")?;
         }
