@@ -4,7 +4,7 @@ use retune_model::{
     Contact, Course, Forcing, Form, History, Loss, Measure, Of, Shape, Source, Spectrum, Sweep,
 };
 use retune_optim::{Part, Response};
-use retune_solver::{Method, least_steps};
+use retune_solver::{Method, least_steps, leaves_out_a_fast_part};
 use retune_study::{FrontsPlan, PaperStudy, Search, Study, counted, joined, over, short};
 
 /// Describes a table of studies.
@@ -80,13 +80,24 @@ fn loss(loss: &Loss) -> String {
     }
 }
 
+/// From when on the default method takes longer steps.
+pub(crate) const LEFT_OUT: &str =
+    "the fast part of the motion, that of a strong dashpot, has decayed and is left out";
+
 /// What a run costs, where runs are made in exact steps.
 fn steps(study: &Study) -> Option<String> {
     let settings = study.solver.settings();
     if settings.method != Method::Hybrid || study.objective().is_steady() {
         return None;
     }
-    let (least, most) = (least_steps(&study.scene, study.window.end.get()), settings.max_steps);
+    let (end, most) = (study.window.end.get(), settings.max_steps);
+    let least = least_steps(&study.scene, end);
+    if leaves_out_a_fast_part(&study.scene, end) {
+        return Some(format!(
+            "a run has steps of {} s in flight, longer ones once {LEFT_OUT}; max_steps is {most}",
+            short(end / least)
+        ));
+    }
     let refused = if least > most as f64 { ": it is refused" } else { "" };
     let contacts = if study.scene.damper.is_some_and(|damper| damper.contact.is_some()) {
         ", and those of contacts"

@@ -28,11 +28,12 @@ pub struct Designs {
 
 /// A row of the table.
 #[derive(Clone, Debug, Serialize)]
-#[expect(missing_docs, reason = "their names say it")]
 pub struct Row {
     /// The entry in the column of its own.
     pub label: String,
+    /// The damper in words.
     pub damper: String,
+    /// Its numbers.
     #[serde(flatten)]
     pub found: TunedDamper,
     /// The E1max that the paper prints for it, J.

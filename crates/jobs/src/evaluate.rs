@@ -62,9 +62,10 @@ fn shown(text: &str) -> String {
 }
 
 /// The input of designs and the outputs.
-#[expect(missing_docs, reason = "their names say it")]
 pub struct Streams<'a, I> {
+    /// The designs, one per line.
     pub input: I,
+    /// Receives an answer for each line.
     pub answers: &'a mut (dyn Write + Send),
     /// Receives a message for each line without a value.
     pub complaints: &'a mut (dyn FnMut(&str) + Send),

@@ -139,14 +139,16 @@ pub fn open(
 
 /// The options of a job.
 #[derive(Clone, Debug, Default)]
-#[expect(missing_docs, reason = "their names say it")]
 pub struct Request {
+    /// The study file.
     pub study: PathBuf,
     /// Directory of the results; by default that of the job.
     pub out: Option<PathBuf>,
     /// Number of threads; by default all cores. The results are the same for any number.
     pub threads: Option<u16>,
+    /// Whether to continue earlier work.
     pub begin: Begin,
+    /// Whether to replace files that Retune did not make, or that belong to another study.
     pub replace: bool,
 }
 

@@ -1,5 +1,6 @@
 //! `losses`: what a damper is worth when its contacts lose energy. One is tuned as if they lost nothing, one anew for each restitution, one for
-//! the worst of all at once, and the paper's is kept; each is evaluated at every restitution, and where the energy goes is told.
+//! the worst of all at once, and one is kept: the paper's for the paper's structure, that of the study for any other. Each is evaluated at every
+//! restitution, and where the energy goes is told.
 
 mod page;
 mod points;
@@ -16,7 +17,7 @@ use crate::{Error, Observer, Request, Silent};
 use points::{FILE, at};
 use retune_model::{Design, Parameter};
 use retune_optim::Unusable;
-use retune_study::{Rule, Study, clipped, read};
+use retune_study::{Rule, Study, clipped, is_papers_structure, read};
 use serde_json::json;
 
 /// The files of the job.
@@ -57,9 +58,7 @@ pub fn losses(request: &Request, watch: &dyn Observer) -> Result<Done<Losses>, E
         let lossless = designs[0].2; // the first restitution is 1
         watch.log("\nall restitutions at once")?;
         let hedged = searches.tune(&study, "all")?.damper.design;
-        for (tuning, design) in
-            [(Tuning::Paper, papers()?), (Tuning::Lossless, lossless), (Tuning::Hedged, hedged)]
-        {
+        for (tuning, design) in [kept(&study)?, (Tuning::Lossless, lossless), (Tuning::Hedged, hedged)] {
             designs.extend(restitutions.iter().map(|e| (tuning, *e, design)));
         }
         let points = of_each(&designs, &Silent, |(tuning, e, design)| {
@@ -80,6 +79,16 @@ fn restitutions(study: &Study) -> Result<Vec<f64>, Error> {
     all.sort_by(|a, b| b.total_cmp(a));
     all.dedup();
     Ok(all)
+}
+
+/// The damper that is not tuned: the paper's means nothing for another structure.
+fn kept(study: &Study) -> Result<(Tuning, Design), Error> {
+    let damper = study.scene.damper.ok_or_else(|| Error::rule(study)(Rule::NoDamper))?;
+    if is_papers_structure(&study.scene) {
+        Ok((Tuning::Paper, papers()?))
+    } else {
+        Ok((Tuning::Study, Design::of(&damper)))
+    }
 }
 
 /// The paper's SSVI NES.

@@ -29,9 +29,10 @@ const ENDING: &str = ".part";
 
 /// Share number `index`, from 1, of `count`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(missing_docs, reason = "their names say it")]
 pub struct Shard {
+    /// Its number, from 1.
     pub index: usize,
+    /// The number of shares.
     pub count: usize,
 }
 
@@ -79,13 +80,14 @@ struct Head {
 }
 
 /// Rows of which shares become parts, in the directory of their results.
-#[expect(missing_docs, reason = "their names say it")]
 pub struct Shared<'a> {
+    /// The rows to share.
     pub rows: &'a dyn Rows,
     /// The identity of the whole work.
     pub identity: Identity,
     /// The directory of its results; parts are in [`PARTS`] in it.
     pub out: &'a Path,
+    /// The order to open that directory.
     pub order: &'a Order,
     /// The command that makes a part, without `--shard`.
     pub command: String,

@@ -1,9 +1,9 @@
 //! The results of a run: one type, from which JSON and text are made.
 
-use crate::describe::forced;
-use retune_model::{Damper, Design, Measure, Parameter, Positive, Scene, Source, energy_ratios};
+use crate::describe::{LEFT_OUT, forced};
+use retune_model::{Damper, Design, Measure, Parameter, PerMeasure, Positive, Scene, Source, energy_ratios};
 use retune_optim::Objective;
-use retune_solver::{Response, SceneKind, StructureMaxima};
+use retune_solver::{Method, Response, SceneKind, StructureMaxima, leaves_out_a_fast_part};
 use retune_study::{Solver, Span, Study, counted, hertz_and_rpm, is_of_paper, over, rounded};
 use serde::Serialize;
 
@@ -33,6 +33,8 @@ pub struct Summary {
     force_max: Walls<f64>,
     pressure_max: Walls<f64>,
     final_state: FinalState,
+    #[serde(skip)]
+    largest: PerMeasure<f64>,
     /// The smallest model that was exact.
     scene: SceneKind,
     steps: u64,
@@ -173,6 +175,7 @@ impl Summary {
             force_max: Walls::of(response.force_max),
             pressure_max: Walls::of(response.pressure_max),
             final_state: FinalState { x1, v1, x2, v2 },
+            largest: PerMeasure(Measure::ALL.map(|measure| response.largest(measure))),
             scene: kind,
             steps: work.steps,
             rejected: work.rejected,
@@ -200,16 +203,7 @@ impl Summary {
 
     /// The largest value of a quantity in the window, in its SI unit.
     pub fn largest(&self, measure: Measure) -> f64 {
-        match measure {
-            Measure::Energy => self.e1_max,
-            Measure::Displacement => self.structure.x1max,
-            Measure::Velocity => self.structure.v1max,
-            Measure::Acceleration => self.structure.a1max,
-            Measure::GroundForce => self.structure.ground_force_max,
-            Measure::Stroke => self.spring_deflection_max,
-            Measure::ContactForce => self.force_max.primary.max(self.force_max.obstacle),
-            Measure::ContactPressure => self.pressure_max.primary.max(self.pressure_max.obstacle),
-        }
+        self.largest.get(measure)
     }
 
     /// Impacts in the window, on the structure and on the obstacle.
@@ -273,11 +267,16 @@ impl std::fmt::Display for Summary {
                 Source::Imbalance(_) => "that force / (imbalance omega²)",
                 Source::Base(_) => "x1max / base",
                 Source::BaseAcceleration(_) => "x1max omega² / base_acceleration",
-                _ => "that force / P",
+                Source::Force(_) | Source::Decay(_) | Source::History(_) => "that force / P",
             };
             writeln!(f, "transmiss.  {share:<12.5} the transmissibility: {by}")?;
         }
-        writeln!(f, "model       {model}")?;
+        write!(f, "model       {model}")?;
+        let MadeBy { window, solver, .. } = &self.made_by;
+        if solver.method == Method::Hybrid && leaves_out_a_fast_part(&self.parameters, window.end.get()) {
+            write!(f, "; longer steps once {LEFT_OUT}")?;
+        }
+        writeln!(f)?;
         let (steps, evaluations) = (counted(self.steps, "step"), counted(self.evaluations, "evaluation"));
         write!(f, "work        {steps}, {} rejected, {evaluations}", self.rejected)
     }

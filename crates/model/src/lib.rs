@@ -81,7 +81,7 @@ pub use hertz::{
 pub use history::{Course, History, Of, Pulse, Shape};
 pub use kept::Kept;
 pub use loss::{Loss, Restoring};
-pub use made::{Form, Harmonic, Made, Recipe, Spectrum, Sweep, Unmade};
+pub use made::{Form, Harmonic, Made, Recipe, Spectrum, Sweep, Unmade, drawn_number};
 pub use measure::{Measure, PerMeasure};
 pub use mode::{Mode, left_out, most_felt};
 pub use parameter::Parameter;

@@ -301,7 +301,7 @@ impl Spectrum {
         let (width, mut state) = ((to - from) / count, self.seed);
         (0..count as usize).map(move |i| {
             let omega = from + (i as f64 + 0.5) * width;
-            [(2.0 * self.density_at(omega) * width).sqrt(), omega, TAU * next(&mut state)]
+            [(2.0 * self.density_at(omega) * width).sqrt(), omega, TAU * drawn_number(&mut state)]
         })
     }
 
@@ -313,8 +313,8 @@ impl Spectrum {
     }
 }
 
-/// The next number of a draw, from 0 to 1: SplitMix64 (G. L. Steele, D. Lea and C. H. Flood, Proc. OOPSLA 2014, 453).
-fn next(state: &mut u64) -> f64 {
+/// The next number of a draw, from 0 to below 1: SplitMix64 (G. L. Steele, D. Lea and C. H. Flood, Proc. OOPSLA 2014, 453).
+pub fn drawn_number(state: &mut u64) -> f64 {
     *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
     let mut mixed = *state;
     mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);

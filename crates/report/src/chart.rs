@@ -182,9 +182,10 @@ pub enum Key {
 
 /// A side of the grid.
 #[derive(Clone, Debug)]
-#[expect(missing_docs, reason = "their names say it")]
 pub struct Nodes {
+    /// The label of the axis.
     pub label: String,
+    /// Its scale.
     pub scale: Scale,
     /// Its values, ascending.
     pub values: Vec<f64>,

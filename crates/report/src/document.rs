@@ -9,11 +9,12 @@ use serde::{Deserialize, Serialize};
 /// The verdict on a statement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-#[expect(missing_docs, reason = "their names say it")]
 pub enum Verdict {
+    /// It holds.
     Holds,
     /// It holds in part, or in a sense that is not stated.
     Partly,
+    /// It does not hold.
     Fails,
     /// Practically equal cases decide it differently.
     Undecided,
@@ -76,9 +77,10 @@ pub struct Statement {
 
 /// A figure with its caption that stands in a file of its own, too.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "their names say it")]
 pub struct Figure {
+    /// The name of its file.
     pub file: String,
+    /// What is drawn.
     pub drawing: Drawing,
     /// What it shows, and how it was made.
     pub caption: String,
@@ -86,14 +88,16 @@ pub struct Figure {
 
 /// A piece of a page.
 #[derive(Debug)]
-#[expect(missing_docs, reason = "their names say it")]
 pub enum Block {
+    /// A paragraph.
     Words(String),
     /// A paragraph that begins with its subject.
     About(&'static str, String),
     /// How the contents of a section were made.
     MadeBy(String),
+    /// Statements with their verdicts.
     Statements(Vec<Statement>),
+    /// A list with bullets.
     List(Vec<String>),
     /// A table: its caption, its head, its rows.
     Table(String, Vec<String>, Vec<Vec<String>>),
@@ -111,12 +115,14 @@ pub enum Block {
 
 /// A page.
 #[derive(Debug)]
-#[expect(missing_docs, reason = "their names say it")]
 pub struct Document {
+    /// Its title.
     pub title: String,
+    /// The command that made it.
     pub command: &'static str,
     /// What stands before the first section.
     pub opening: Vec<Block>,
+    /// The sections, in their order.
     pub sections: Vec<Section>,
 }
 

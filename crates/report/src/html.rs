@@ -24,10 +24,12 @@ pub fn head(title: &str) -> Markup {
 const LONG: usize = 48;
 
 /// A table. The first cell of each row is the row's heading.
-#[expect(missing_docs, reason = "their names say it")]
 pub struct Table {
+    /// What it shows.
     pub caption: String,
+    /// The headings of its columns.
     pub head: Vec<String>,
+    /// Its cells, row by row.
     pub rows: Vec<Vec<Markup>>,
     /// Whether its cells break into lines.
     pub wraps: bool,

@@ -29,13 +29,14 @@ impl Width {
 
 /// A figure as data.
 #[derive(Clone, Debug)]
-#[expect(missing_docs, reason = "their names say it")]
 pub struct Sheet {
     /// What it shows, in a few words: the `<title>` of the SVG.
     pub title: String,
     /// What can be seen in it, for a reader who cannot: its `<desc>`.
     pub description: String,
+    /// Its width.
     pub width: Width,
+    /// Its charts, row by row.
     pub charts: Vec<Chart>,
     /// Charts in a row.
     pub columns: usize,

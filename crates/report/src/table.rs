@@ -61,12 +61,14 @@ impl Shown<'_> {
 
 /// A cell. In files numbers have all their digits, so that they can be compared to the last bit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "their names say it")]
 pub enum Cell {
     /// A number; an empty field where it is NaN.
     Number(f64),
+    /// A whole number.
     Count(u64),
+    /// A text.
     Text(String),
+    /// No value.
     Empty,
 }
 

@@ -71,7 +71,7 @@ pub use linear::steps;
 pub use losses::{Losses, losses};
 pub use recurrence::test::Settle;
 pub use response::{Extreme, Response, SceneKind, StructureMaxima, Work};
-pub use run::{Follower, least_steps};
+pub use run::{Follower, least_steps, leaves_out_a_fast_part};
 pub use settings::{Contacts, Method, Settings, Window};
 pub use settle::settled;
 pub use simulate::{e1_max, simulate, touch_downs};

@@ -4,6 +4,7 @@ use crate::error::SolverError;
 use crate::hybrid::contact_free::ContactFree;
 use crate::hybrid::propagator::{Hybrid, Motion, Phase};
 use crate::linear::flow::Flow;
+use crate::linear::reduced::Reduced;
 use crate::methods::onestep::Run;
 use crate::methods::{dop853::Dop853, euler::Euler, ode23::Ode23, ode23s::Ode23s, ode45::Ode45, rk4::Rk4};
 use crate::observe::observer::Observer;
@@ -18,7 +19,8 @@ use retune_model::{Bare, Coupled, Scene};
 /// The state at the end of a run, and its work.
 type Followed<const N: usize> = Result<([f64; N], Work), SolverError>;
 
-/// The least number of steps of a run of `seconds` (s) by the default method: those of its flight. Contacts add to them.
+/// The least number of steps of a run of `seconds` (s) by the default method, unless it [`leaves_out_a_fast_part`]: those of its flight.
+/// Contacts add to them.
 pub fn least_steps(scene: &Scene, seconds: f64) -> f64 {
     let Scene { primary, forcing, damper } = scene;
     let bare = Bare::new(primary, forcing);
@@ -28,6 +30,21 @@ pub fn least_steps(scene: &Scene, seconds: f64) -> f64 {
     };
     // Each piece of a record is a step at least.
     seconds / step.min(bare.even_force().map_or(f64::INFINITY, |force| force.even[1]))
+}
+
+/// Whether a run of `seconds` (s) by the default method leaves out a fast part of its flights once that has decayed, as that of a strong
+/// dashpot, and flies on in longer steps.
+pub fn leaves_out_a_fast_part(scene: &Scene, seconds: f64) -> bool {
+    let Scene { primary, forcing, damper } = scene;
+    let bare = Bare::new(primary, forcing);
+    let longest = bare.even_force().map_or(seconds, |force| seconds.min(force.even[1]));
+    match damper {
+        None => Reduced::of(&Flow::new(bare.linear(), longest), longest).is_some(),
+        Some(damper) => {
+            let linear = Coupled::new(primary, forcing, damper).linear();
+            Reduced::of(&Flow::new(linear, longest), longest).is_some()
+        }
+    }
 }
 
 /// A system whose run from its start at t = 0 can be followed by any plan.

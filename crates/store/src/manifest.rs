@@ -19,8 +19,8 @@ pub type Fields = IndexMap<String, Value>;
 
 /// The origin of a directory of results.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "their names say it")]
 pub struct Manifest {
+    /// The version of Retune.
     pub retune: String,
     /// The command and the study file that made them.
     pub made_by: MadeBy,
@@ -30,6 +30,7 @@ pub struct Manifest {
     pub arithmetic: String,
     /// The integration method and its tolerances; none where studies differ in it, and then each says its own in `resolved.json`.
     pub solver: Option<Fields>,
+    /// The files, each with its SHA-256.
     pub files: BTreeMap<String, String>,
     /// Files of an earlier study that are still beside them, with their SHA-256.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]

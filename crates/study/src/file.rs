@@ -44,9 +44,10 @@ pub(super) fn read_text(path: &Path) -> Result<String, StudyError> {
     Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
 }
 
-/// The text with every number in its SI unit, see [`units`].
+/// The text with every number in its SI unit, see [`units`]; what is no JSON is refused.
 pub(super) fn in_si<'a>(text: &'a str, file: &str) -> Result<Cow<'a, str>, StudyError> {
-    units::in_si(text).map_err(|units::Refused { line, column, problem }| StudyError::Field {
+    let whole = typed(text, file)?;
+    units::in_si(text, &whole).map_err(|units::Refused { line, column, problem }| StudyError::Field {
         file: file.to_owned(),
         line,
         column,
@@ -56,22 +57,31 @@ pub(super) fn in_si<'a>(text: &'a str, file: &str) -> Result<Cow<'a, str>, Study
 
 /// Parses the text of `file`; an error names the field.
 pub(super) fn parse<T: DeserializeOwned + Serialize>(text: &str, file: &str) -> Result<T, StudyError> {
-    let refuse = |path: Option<String>, error: &serde_json::Error| StudyError::Field {
+    let text = &*in_si(text, file)?;
+    let value: T = typed(text, file)?;
+    let given = typed(text, file)?;
+    let meant = serde_json::to_value(&value).map_err(|error| refused(file, None, &error))?;
+    match list_for_object(&given, &meant) {
+        Some(field) => Err(StudyError::List { file: file.to_owned(), field }),
+        None => Ok(value),
+    }
+}
+
+/// The text of `file` as a value of a type.
+fn typed<T: DeserializeOwned>(text: &str, file: &str) -> Result<T, StudyError> {
+    let mut json = serde_json::Deserializer::from_str(text);
+    let value = serde_path_to_error::deserialize(&mut json)
+        .map_err(|error| refused(file, Some(error.path().to_string()), error.inner()))?;
+    json.end().map_err(|error| refused(file, None, &error))?;
+    Ok(value)
+}
+
+fn refused(file: &str, path: Option<String>, error: &serde_json::Error) -> StudyError {
+    StudyError::Field {
         file: file.to_owned(),
         line: error.line(),
         column: error.column(),
         problem: explain(path.as_deref(), error),
-    };
-    let text = &*in_si(text, file)?;
-    let mut json = serde_json::Deserializer::from_str(text);
-    let value = serde_path_to_error::deserialize(&mut json)
-        .map_err(|error| refuse(Some(error.path().to_string()), error.inner()))?;
-    json.end().map_err(|error| refuse(None, &error))?;
-    let given = serde_json::from_str(text).map_err(|error| refuse(None, &error))?;
-    let meant = serde_json::to_value(&value).map_err(|error| refuse(None, &error))?;
-    match list_for_object(&given, &meant) {
-        Some(field) => Err(StudyError::List { file: file.to_owned(), field }),
-        None => Ok(value),
     }
 }
 

@@ -104,7 +104,7 @@ pub struct Solver {
 }
 
 /// The optimisation: damper parameters are tuned to minimise E1max, the largest energy of the primary structure.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Optimize {
     /// The parameters to tune; the others keep their values in `scene`.

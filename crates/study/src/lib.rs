@@ -50,7 +50,9 @@ pub use read::{found_in, read, read_paper};
 pub use rule::Rule;
 pub use search::{MOST_GRID_POINTS, Search, check_name, clipped, name_from};
 pub use set::{Settable, Setting, SettingError, start};
-pub use table2::{PaperStudy, SpringBounds, Table2, is_of_paper, read_rows, read_table2};
+pub use table2::{
+    PaperStudy, SpringBounds, Table2, is_of_paper, is_papers_structure, read_rows, read_table2,
+};
 pub use units::typed;
 pub use words::{
     are, counted, design_cells, design_words, fields, frequency, hertz_and_rpm, joined, over, rounded, short,

@@ -3,7 +3,8 @@
 use super::format::Study;
 use super::rule::Rule;
 use retune_model::{Column, Forcing, Of, Record, RecordFile, Samples, Scene, Unit, unit};
-use std::io::{BufRead, BufReader};
+use std::fs::File;
+use std::io::{BufRead, BufReader, Seek};
 use std::path::Path;
 
 /// Reads the record of a scene, if it names a file with one; a path that is not absolute begins at `base`.
@@ -49,21 +50,24 @@ fn read_forcing(forcing: &mut Forcing, listed: bool, base: &Path) -> Result<(), 
 fn whole(of: Of, record: &Record, base: &Path) -> Result<Record, String> {
     let source = record.source();
     let path = base.join(&source.file);
-    let file = std::fs::File::open(&path).map_err(|error| format!("cannot be read: {error}"))?;
-    let lines = Lines { file: BufReader::new(file), line: String::new(), number: 0 };
+    let file = File::open(&path).map_err(|error| format!("cannot be read: {error}"))?;
     let is_at2 = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("at2"));
-    let samples = if is_at2 { at2(of, source, lines)? } else { csv(of, source, lines)? };
+    let samples = if is_at2 { at2(of, source, Lines::of(&file))? } else { csv(of, source, file)? };
     Ok(record.with(samples))
 }
 
 /// The lines of a file, one at a time.
-struct Lines {
-    file: BufReader<std::fs::File>,
+struct Lines<'a> {
+    file: BufReader<&'a File>,
     line: String,
     number: usize,
 }
 
-impl Lines {
+impl<'a> Lines<'a> {
+    fn of(file: &'a File) -> Self {
+        Self { file: BufReader::new(file), line: String::new(), number: 0 }
+    }
+
     /// The next line with something on it.
     fn next(&mut self) -> Result<Option<&str>, String> {
         loop {
@@ -86,33 +90,41 @@ fn factor(source: &RecordFile, own: Unit) -> f64 {
 }
 
 /// CSV: a header, the time in the first column.
-fn csv(of: Of, source: &RecordFile, mut lines: Lines) -> Result<Samples, String> {
+fn csv(of: Of, source: &RecordFile, mut file: File) -> Result<Samples, String> {
     let factor = factor(source, of.units()[0]);
-    let Some(head) = lines.next()? else { return Err("is empty".to_owned()) };
-    let separator = [',', ';', '\t'].into_iter().find(|mark| head.contains(*mark)).unwrap_or(',');
-    let names: Vec<&str> = head.split(separator).map(|name| name.trim().trim_matches('"')).collect();
+    let mark = separator(&mut file)?;
+    let mut table =
+        csv::ReaderBuilder::new().delimiter(mark).flexible(true).trim(csv::Trim::All).from_reader(file);
+    let names = table.headers().map_err(|error| error.to_string())?.clone();
     if names.iter().all(|name| name.parse::<f64>().is_ok()) {
         return Err("line 1: is no header: give the names of its columns, the time first".to_owned());
     }
     let place = column(source.column.as_ref(), &names)?;
     let (mut times, mut values) = (Vec::new(), Vec::new());
-    loop {
-        let number = lines.number + 1;
-        let Some(line) = lines.next()? else { break };
-        let mut fields = line.split(separator).map(str::trim);
-        let mut at = |place: usize| {
-            let field = fields.nth(place);
-            let field = field.ok_or_else(|| format!("line {number}: too few columns"))?;
-            field.parse::<f64>().map_err(|_| format!("line {number}: \"{field}\" is not a number"))
+    let mut row = csv::StringRecord::new();
+    while table.read_record(&mut row).map_err(|error| error.to_string())? {
+        let line = row.position().map_or(0, csv::Position::line);
+        let at = |place: usize| {
+            let field = row.get(place).ok_or_else(|| format!("line {line}: too few columns"))?;
+            field.parse::<f64>().map_err(|_| format!("line {line}: \"{field}\" is not a number"))
         };
         times.push(at(0)?);
-        values.push(factor * at(place - 1)?);
+        values.push(factor * at(place)?);
     }
     Samples::at(times, values).map_err(|bad| bad.to_string())
 }
 
+/// What separates the columns of a file, by its first line; the file is then at its beginning again.
+fn separator(file: &mut File) -> Result<u8, String> {
+    let mut lines = Lines::of(&*file);
+    let head = lines.next()?.ok_or("is empty")?;
+    let mark = [',', ';', '\t'].into_iter().find(|mark| head.contains(*mark)).unwrap_or(',');
+    file.rewind().map_err(|error| format!("cannot be read: {error}"))?;
+    Ok(mark as u8)
+}
+
 /// The index of the column of the values.
-fn column(wanted: Option<&Column>, names: &[&str]) -> Result<usize, String> {
+fn column(wanted: Option<&Column>, names: &csv::StringRecord) -> Result<usize, String> {
     let place = match wanted {
         None => Some(1),
         Some(Column::Number(number)) => number.checked_sub(1),

@@ -6,7 +6,7 @@ use super::format::{Study, is_default};
 use super::objective::{MOST_SAMPLES, check_quantity};
 use super::read::{from_text, named};
 use super::rule::Rule;
-use retune_model::{Damper, Design, Positive};
+use retune_model::{Damper, Design, Positive, Scene};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -114,13 +114,24 @@ pub fn read_rows(path: &Path) -> Result<(Table2, Vec<PaperStudy>), StudyError> {
 
 /// Whether a damper is one that the paper publishes as an optimum: a row of its Table 2, with that mass and design.
 pub fn is_of_paper(damper: &Damper) -> bool {
+    built_in_rows().into_iter().any(|(paper, own)| {
+        paper == Some(Design::of(damper)) && own.damper.is_some_and(|own| own.mass == damper.mass)
+    })
+}
+
+/// Whether a scene has the structure of the paper, with a damper of the paper's mass.
+pub fn is_papers_structure(scene: &Scene) -> bool {
+    let mass = |scene: &Scene| scene.damper.map(|damper| damper.mass);
+    built_in_rows().iter().any(|(_, own)| own.primary == scene.primary && mass(own) == mass(scene))
+}
+
+/// The rows of the paper's Table 2, each with its scene.
+fn built_in_rows() -> Vec<(Option<Design>, Scene)> {
     let text_of = |name: &Path| text(&Path::new(PLACE).join(name));
     let table = text_of(Path::new("table2.json")).and_then(|text| parse::<Table2>(text, "table2.json").ok());
-    table.iter().flat_map(|table| &table.rows).any(|row| {
-        let study = text_of(&row.study).and_then(|text| from_text(text, "built in").ok());
-        let own = study.and_then(|study| study.scene.damper);
-        row.paper == Some(Design::of(damper)) && own.is_some_and(|own| own.mass == damper.mass)
-    })
+    let rows = table.into_iter().flat_map(|table| table.rows);
+    rows.filter_map(|row| Some((row.paper, from_text(text_of(&row.study)?, "built in").ok()?.scene)))
+        .collect()
 }
 
 /// The study with another design in its scene, if there is one.
@@ -147,6 +158,20 @@ mod tests {
         assert!(is_of_paper(&tmd) && is_of_paper(&damper("table2-ssvi.json")));
         assert!(!is_of_paper(&Damper { stiffness: tmd.damping, ..tmd }), "another stiffness");
         assert!(!is_of_paper(&Damper { mass: damper_mass(70.0), ..tmd }), "another mass");
+    }
+
+    #[test]
+    fn contract_the_papers_structure_is_recognised_with_any_design() {
+        let text = text(&Path::new(PLACE).join("table2-ssvi.json")).expect("a study");
+        let scene = from_text(text, "table2-ssvi.json").expect("a study").scene;
+        let damper = scene.damper.expect("a damper");
+        let with = |damper: Damper| Scene { damper: Some(damper), ..scene };
+        assert!(is_papers_structure(&with(Damper { stiffness: damper.damping, ..damper })), "another design");
+        assert!(!is_papers_structure(&with(Damper { mass: damper_mass(70.0), ..damper })), "another mass");
+        assert!(!is_papers_structure(&Scene { damper: None, ..scene }), "no damper");
+        let mut heavier = scene;
+        heavier.primary.mass = damper_mass(1001.0);
+        assert!(!is_papers_structure(&heavier), "another structure");
     }
 
     fn damper_mass(mass: f64) -> Positive {

@@ -5,7 +5,9 @@
 
 use retune_model::{Measure, Parameter, Unit, unit};
 use serde_json::Value;
+use serde_json::value::RawValue;
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
 /// A text in the place of a number that has no unit of its field.
 pub(super) struct Refused {
@@ -15,35 +17,59 @@ pub(super) struct Refused {
     pub problem: String,
 }
 
-/// Objects and lists in one another, at most: as many as the parser allows.
-const DEEPEST: usize = 128;
-
-/// The text with every number that has a unit as one in its SI unit. A text that is not JSON comes back as it is, as far as it is none: the
-/// parser says what is wrong with it.
-pub(super) fn in_si(text: &str) -> Result<Cow<'_, str>, Refused> {
-    let mut scan = Scan { text, at: 0, path: Vec::new(), found: Vec::new() };
-    // What stops early is told by the parser.
-    let _ = scan.value();
-    let whole: Option<Value> = if scan.found.is_empty() { None } else { serde_json::from_str(text).ok() };
-    let (mut out, mut copied) = (String::new(), 0);
-    for Text { span, path } in &scan.found {
-        let token = &text[span.clone()];
-        let Ok(typed) = serde_json::from_str::<String>(token) else { continue };
-        let Some(units) = units(path, whole.as_ref()) else { continue };
+/// The text of `whole` with every number that has a unit as one in its SI unit.
+pub(super) fn in_si<'a>(text: &'a str, whole: &Value) -> Result<Cow<'a, str>, Refused> {
+    let (mut found, mut out, mut copied) = (Vec::new(), String::new(), 0);
+    // The text is JSON, as it has been read as `whole`.
+    let _ = serde_json::from_str(text).and_then(|raw| texts(raw, &mut Vec::new(), &mut found));
+    found.sort_by_key(|(quoted, _)| quoted.as_ptr());
+    for (quoted, path) in found {
+        let Ok(typed) = serde_json::from_str::<String>(quoted) else { continue };
+        let Some(units) = units(&path, whole) else { continue };
         if typed.trim().parse::<f64>().is_ok() {
             continue; // a number in quotes is a slip, and no unit
         }
-        let number = read(&typed, units);
-        let number = number.map_err(|problem| refused(text, span.start, path, &problem))?;
-        out.push_str(&text[copied..span.start]);
+        let start = quoted.as_ptr().addr() - text.as_ptr().addr();
+        let number = read(&typed, units).map_err(|problem| refused(text, start, &path, &problem))?;
+        out.push_str(&text[copied..start]);
         out.push_str(&Value::from(number).to_string());
-        copied = span.end;
+        copied = start + quoted.len();
     }
     if copied == 0 {
         return Ok(Cow::Borrowed(text));
     }
     out.push_str(&text[copied..]);
     Ok(Cow::Owned(out))
+}
+
+/// Every text that is a value, with its quotes, as a part of the text that was parsed, and the path to it.
+fn texts<'a>(
+    raw: &'a RawValue,
+    path: &mut Vec<Step>,
+    found: &mut Vec<(&'a str, Vec<Step>)>,
+) -> serde_json::Result<()> {
+    let text = raw.get();
+    let inner: Vec<(Step, &RawValue)> = match text.as_bytes().first() {
+        Some(b'{') => {
+            let fields: BTreeMap<String, &RawValue> = serde_json::from_str(text)?;
+            fields.into_iter().map(|(name, value)| (Step::Field(name), value)).collect()
+        }
+        Some(b'[') => {
+            let items: Vec<&RawValue> = serde_json::from_str(text)?;
+            items.into_iter().enumerate().map(|(i, value)| (Step::Item(i), value)).collect()
+        }
+        Some(b'"') => {
+            found.push((text, path.clone()));
+            Vec::new()
+        }
+        _ => Vec::new(),
+    };
+    for (step, value) in inner {
+        path.push(step);
+        texts(value, path, found)?;
+        path.pop();
+    }
+    Ok(())
 }
 
 fn refused(text: &str, at: usize, path: &[Step], problem: &str) -> Refused {
@@ -95,7 +121,7 @@ fn of_name(name: &str) -> Option<&'static [Unit]> {
 }
 
 /// The units of the field at a path; none where a text is no number.
-fn units(path: &[Step], whole: Option<&Value>) -> Option<&'static [Unit]> {
+fn units(path: &[Step], whole: &Value) -> Option<&'static [Unit]> {
     let names: Vec<&str> = path.iter().filter_map(Step::field).collect();
     let mut inwards = names.iter().rev().copied().peekable();
     let own = inwards.peek().copied()?;
@@ -112,13 +138,11 @@ fn units(path: &[Step], whole: Option<&Value>) -> Option<&'static [Unit]> {
 }
 
 /// Whether the object around a field says that it is relative.
-fn is_relative(path: &[Step], whole: Option<&Value>) -> bool {
+fn is_relative(path: &[Step], whole: &Value) -> bool {
     let around = path.split_last().map_or(path, |(_, around)| around);
-    let inner = whole.and_then(|whole| {
-        around.iter().try_fold(whole, |value, step| match step {
-            Step::Field(name) => value.get(name),
-            Step::Item(i) => value.get(i),
-        })
+    let inner = around.iter().try_fold(whole, |value, step| match step {
+        Step::Field(name) => value.get(name),
+        Step::Item(i) => value.get(i),
     });
     inner.and_then(|band| band.get("relative")) == Some(&Value::Bool(true))
 }
@@ -136,95 +160,5 @@ impl Step {
             Self::Field(name) => Some(name),
             Self::Item(_) => None,
         }
-    }
-}
-
-/// A text that is a value: where it stands, its quotes included, and the path to it.
-struct Text {
-    span: std::ops::Range<usize>,
-    path: Vec<Step>,
-}
-
-/// A walk through JSON that notes where texts are; none of its steps where the text is not JSON.
-struct Scan<'a> {
-    text: &'a str,
-    at: usize,
-    path: Vec<Step>,
-    found: Vec<Text>,
-}
-
-impl Scan<'_> {
-    fn value(&mut self) -> Option<()> {
-        match self.next()? {
-            b'{' => self.inside(b'}', |scan, _| {
-                let key = scan.word()?;
-                scan.expect(b':')?;
-                Some(Step::Field(serde_json::from_str(&scan.text[key]).ok()?))
-            }),
-            b'[' => self.inside(b']', |_, i| Some(Step::Item(i))),
-            b'"' => {
-                let span = self.word()?;
-                self.found.push(Text { span, path: self.path.clone() });
-                Some(())
-            }
-            _ => {
-                let rest = &self.text[self.at..];
-                let end = rest.find([',', '}', ']', ' ', '\n', '\r', '\t']).unwrap_or(rest.len());
-                self.at += end;
-                (end > 0).then_some(())
-            }
-        }
-    }
-
-    /// The values of an object or a list, whose end is `close`.
-    fn inside(&mut self, close: u8, step: impl Fn(&mut Self, usize) -> Option<Step>) -> Option<()> {
-        self.at += 1;
-        if self.path.len() == DEEPEST {
-            return None;
-        }
-        for i in 0.. {
-            if i == 0 && self.next()? == close {
-                break;
-            }
-            let step = step(self, i)?;
-            self.path.push(step);
-            self.value()?;
-            self.path.pop();
-            match self.next()? {
-                b',' => self.at += 1,
-                end if end == close => break,
-                _ => return None,
-            }
-        }
-        self.at += 1;
-        Some(())
-    }
-
-    /// The next byte that is no blank.
-    fn next(&mut self) -> Option<u8> {
-        let blanks = self.text.as_bytes()[self.at..].iter().take_while(|byte| b" \n\r\t".contains(byte));
-        self.at += blanks.count();
-        self.text.as_bytes().get(self.at).copied()
-    }
-
-    fn expect(&mut self, byte: u8) -> Option<()> {
-        (self.next()? == byte).then(|| self.at += 1)
-    }
-
-    /// A text in quotes, its quotes included.
-    fn word(&mut self) -> Option<std::ops::Range<usize>> {
-        self.expect(b'"')?;
-        let start = self.at - 1;
-        let mut escaped = false;
-        for byte in self.text.as_bytes()[self.at..].iter() {
-            self.at += 1;
-            match byte {
-                _ if escaped => escaped = false,
-                b'\\' => escaped = true,
-                b'"' => return Some(start..self.at),
-                _ => {}
-            }
-        }
-        None
     }
 }

@@ -90,7 +90,7 @@ pub fn answer(motions: &Motions) -> Vec<String> {
         let usual = most.iter().find(|(other, _)| all.is_reached_from_rest(*other)).map(reached);
         words.extend(usual.map(|usual| format!("No run from rest that was made ends on it. The largest on branches that runs from rest end on: {usual}.")));
         let remedy = |parameter| remedy(&all.branches[*number], first, parameter);
-        let ways: Vec<String> = TRIED.into_iter().filter_map(remedy).collect();
+        let ways: Vec<String> = TRIED.into_iter().chain(Parameter::AMPLITUDES).filter_map(remedy).collect();
         if !ways.is_empty() {
             let (place, ways) = (motions.at(first.value, 6), ways.join("; "));
             words.push(format!("What removes that motion, at {place} and all else as it is: {ways}."));
@@ -237,18 +237,9 @@ fn attractors(motions: &Motions) -> Block {
     Block::table(words, head, rows)
 }
 
-/// The parameters of which one is told how far it can be changed before a motion vanishes: the gaps, the dashpot, the spring, whatever forces
-/// the structure.
-const TRIED: [Parameter; 8] = [
-    Parameter::D,
-    Parameter::C,
-    Parameter::C2,
-    Parameter::K2,
-    Parameter::P,
-    Parameter::Imbalance,
-    Parameter::Base,
-    Parameter::BaseAcceleration,
-];
+/// The parameters of which one is told how far it can be changed before a motion vanishes, but for [`Parameter::AMPLITUDES`]: the gaps, the
+/// dashpot, the spring.
+const TRIED: [Parameter; 4] = [Parameter::D, Parameter::C, Parameter::C2, Parameter::K2];
 /// How far a parameter is changed, as a share of its value.
 const REACH: [f64; 2] = [0.3, 3.0];
 

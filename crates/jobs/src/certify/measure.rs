@@ -43,24 +43,11 @@ pub(super) enum OtherStarts {
 }
 
 /// The parameters that a built scene has with an error; a loss or a restitution where it has one.
-const INEXACT: [Parameter; 16] = [
-    Parameter::M1,
-    Parameter::C1,
-    Parameter::K1,
-    Parameter::M2,
-    Parameter::K2,
-    Parameter::C2,
-    Parameter::D,
-    Parameter::C,
-    Parameter::R,
-    Parameter::P,
-    Parameter::Imbalance,
-    Parameter::Base,
-    Parameter::BaseAcceleration,
-    Parameter::Omega,
-    Parameter::Lambda,
-    Parameter::Restitution,
-];
+fn inexact() -> impl Iterator<Item = Parameter> {
+    use Parameter::{C, C1, C2, D, K1, K2, Lambda, M1, M2, Omega, R, Restitution};
+    let bodies = [M1, C1, K1, M2, K2, C2, D, C, R].into_iter();
+    bodies.chain(Parameter::AMPLITUDES).chain([Omega, Lambda, Restitution])
+}
 
 pub(super) fn measure(study: &Study, damper: &Damper, others: OtherStarts) -> Result<Certificate, Error> {
     let (goal, settings) = (study.goal(), study.solver.settings());
@@ -175,7 +162,7 @@ fn sensitivities(
     near: &mut Vec<Near>,
 ) -> Vec<Sensitivity> {
     let single = goal.objective.terms().iter().any(|(_, term)| term.omega.is_none());
-    let tried = INEXACT.into_iter().filter(|parameter| single || *parameter != Parameter::Omega);
+    let tried = inexact().filter(|parameter| single || *parameter != Parameter::Omega);
     let known: Vec<(Parameter, f64)> = tried
         .filter_map(|parameter| Some((parameter, parameter.of(&study.scene)?)))
         .filter(|(parameter, value)| {

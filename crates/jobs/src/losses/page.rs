@@ -66,18 +66,20 @@ fn answer(losses: &Losses) -> Vec<String> {
     });
     let lossless = from_to(Tuning::Lossless, "A damper tuned as if contacts lost nothing has the worst");
     let paper = from_to(Tuning::Paper, "The paper's damper");
-    [lossless, anew, hedged, paper].into_iter().flatten().collect()
+    let study = from_to(Tuning::Study, "The damper of the study");
+    [lossless, anew, hedged, paper, study].into_iter().flatten().collect()
 }
 
 fn values(losses: &Losses) -> Block {
     let quantity = losses.study.quantity();
-    let head = ["e"].into_iter().chain(Tuning::ALL.map(Tuning::name));
+    let tunings = losses.tunings();
+    let head = ["e"].into_iter().chain(tunings.iter().map(|tuning| tuning.name()));
     let rows = losses.of(Tuning::Anew).map(|point| {
-        let of = |tuning: Tuning| {
-            let same = losses.of(tuning).find(|other| other.restitution == point.restitution);
+        let of = |tuning: &Tuning| {
+            let same = losses.of(*tuning).find(|other| other.restitution == point.restitution);
             same.map_or(String::new(), |same| rounded(same.value, 4))
         };
-        std::iter::once(point.restitution.to_string()).chain(Tuning::ALL.map(of)).collect()
+        std::iter::once(point.restitution.to_string()).chain(tunings.iter().map(of)).collect()
     });
     Block::table(format!("Worst {}, {}", quantity.name(), quantity.unit()), head, rows.collect())
 }
@@ -94,7 +96,7 @@ fn designs(losses: &Losses) -> Block {
 
 const fn line(tuning: Tuning) -> Stroke {
     match tuning {
-        Tuning::Paper => Stroke::new(PURPLE, 1.1, Dash::DashDot),
+        Tuning::Paper | Tuning::Study => Stroke::new(PURPLE, 1.1, Dash::DashDot),
         Tuning::Lossless => Stroke::new(VERMILION, 1.3, Dash::Long),
         Tuning::Hedged => Stroke::solid(GREEN),
         Tuning::Anew => Stroke::new(BLUE, 1.3, Dash::Solid),
@@ -130,11 +132,11 @@ fn draw_values(losses: &Losses, description: &str) -> Drawing {
     let quantity = losses.study.quantity();
     let all = losses.points.iter().map(|(_, point)| point.value);
     let y = Axis::around(format!("worst {}, {}", quantity.name(), quantity.unit()), Scale::Log, all);
-    let layers =
-        Tuning::ALL.map(|tuning| Layer::line(points(losses, tuning, |point| point.value), line(tuning)));
-    let legend = Tuning::ALL.map(|tuning| (Key::Line(line(tuning)), tuning.name().to_owned()));
-    let charts = vec![chart(losses, y, layers.into(), 220.0)];
-    draw(losses, "Dampers whose contacts lose energy", description, legend.into(), charts)
+    let tunings = losses.tunings();
+    let layer = |tuning: &Tuning| Layer::line(points(losses, *tuning, |point| point.value), line(*tuning));
+    let legend = tunings.iter().map(|tuning| (Key::Line(line(*tuning)), tuning.name().to_owned())).collect();
+    let charts = vec![chart(losses, y, tunings.iter().map(layer).collect(), 220.0)];
+    draw(losses, "Dampers whose contacts lose energy", description, legend, charts)
 }
 
 /// The dashpot of the re-tuned damper over the restitution.
@@ -166,5 +168,5 @@ fn draw_powers(losses: &Losses) -> Drawing {
     };
     let legend = parts.map(|(name, stroke)| (Key::Line(stroke), name.to_owned()));
     let title = "Where the energy of the worst run goes";
-    draw(losses, title, title, legend.into(), Tuning::ALL.map(of).into())
+    draw(losses, title, title, legend.into(), losses.tunings().into_iter().map(of).collect())
 }

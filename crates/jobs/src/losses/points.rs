@@ -18,6 +18,8 @@ pub(super) const FILE: &str = "losses.csv";
 pub enum Tuning {
     /// The paper's.
     Paper,
+    /// That of the study's scene.
+    Study,
     /// For contacts that lose nothing.
     Lossless,
     /// For all restitutions at once.
@@ -28,12 +30,13 @@ pub enum Tuning {
 
 impl Tuning {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Paper, Self::Lossless, Self::Hedged, Self::Anew];
+    pub const ALL: [Self; 5] = [Self::Paper, Self::Study, Self::Lossless, Self::Hedged, Self::Anew];
 
     /// Its name in the table.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Paper => "paper",
+            Self::Study => "of the study",
             Self::Lossless => "tuned without loss",
             Self::Hedged => "tuned for all",
             Self::Anew => "re-tuned",
@@ -108,6 +111,11 @@ impl Losses {
     /// Those of a damper, by falling restitution.
     pub fn of(&self, tuning: Tuning) -> impl Iterator<Item = &Point> {
         self.points.iter().filter(move |(own, _)| *own == tuning).map(|(_, point)| point)
+    }
+
+    /// Those that are compared.
+    pub fn tunings(&self) -> Vec<Tuning> {
+        Tuning::ALL.into_iter().filter(|tuning| self.of(*tuning).next().is_some()).collect()
     }
 
     pub(super) fn table(&self) -> Table {

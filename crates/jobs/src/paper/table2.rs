@@ -5,11 +5,11 @@ use super::measures::{Ladder, Spread, at_omega, energy, finest, ladder_table, ov
 use super::plan::{Plan, Tuner, damper};
 use crate::Error;
 use retune_model::{Design, Parameter, PerVariable, Scene};
-use retune_optim::{Failures, Limits, Objective, Response};
+use retune_optim::{Failures, Objective, Response};
 use retune_report::cells;
 use retune_report::document::Verdict;
 use retune_report::table::{Cell, Column, Table};
-use retune_study::{Coarse, Optimize, Refine, Setting, Study};
+use retune_study::{Optimize, Refine, Setting, Study};
 
 /// Samples of the band while the SSVI NES is tuned; the TMD's steady response is exact.
 const SAMPLES: usize = 31;
@@ -111,12 +111,8 @@ fn searched(base: &Study, damper_name: &str, search: &str) -> Result<Study, Erro
         vary: vary.to_vec(),
         objective,
         bounds,
-        limits: Limits::default(),
-        surf: None,
-        coarse: Coarse::default(),
-        global: None,
-        starts: Vec::new(),
         refine: Refine { scaled: true, max_fun_evals: Some(evaluations), ..Refine::default() },
+        ..Optimize::default()
     };
     Ok(Study { name: Some(search.to_owned()), optimize: Some(optimize), ..base })
 }

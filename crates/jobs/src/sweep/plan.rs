@@ -11,11 +11,12 @@ pub const MOST_POINTS: usize = 100_000;
 
 /// What is asked for, as it is typed.
 #[derive(Clone, Debug)]
-#[expect(missing_docs, reason = "their names say it")]
 pub struct Options {
+    /// The parameter that is swept.
     pub over: Parameter,
     /// Its first value; a frequency may have a unit.
     pub from: String,
+    /// Its last value.
     pub to: String,
     /// The unit of ends without one; by default the SI unit.
     pub unit: Option<String>,
@@ -31,14 +32,16 @@ pub struct Options {
 
 /// What is swept. With a study it is the complete input of a sweep.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "their names say it")]
 pub struct Plan {
+    /// The parameter that is swept.
     pub over: Parameter,
     /// Its first value, in its SI unit.
     pub from: f64,
+    /// Its last value.
     pub to: f64,
     /// The number of values, both ends included.
     pub points: usize,
+    /// Whether the values have equal differences or equal ratios.
     pub scale: Scale,
     /// What is shown on screen and in the figure; tables hold everything.
     pub quantities: Vec<Quantity>,

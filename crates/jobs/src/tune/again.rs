@@ -48,7 +48,7 @@ pub(super) fn band(place: &Path, _name: &str) -> Result<Source, Error> {
     let tuned = tuned(place, &study)?;
     Ok(Source::new(move |row: Row| {
         let omega = NonNegative::new(row.number("omega")).ok()?;
-        let scenes = [Scene { damper: None, ..tuned? }, study.scene, tuned?];
+        let scenes = band::compared(&study, tuned?);
         let number = |mut scene: Scene| {
             scene.forcing.frequency = omega;
             band::at_its_own(&study, scene)

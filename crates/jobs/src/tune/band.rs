@@ -21,6 +21,11 @@ const FINER: usize = 4;
 /// A frequency, rad/s, and there the quantity without a damper, with that of the study and with the tuned one; NaN where there is none.
 pub(crate) type Rows = Vec<(f64, [f64; 3])>;
 
+/// The scenes of every comparison, in the order of `band.csv`: no damper, that of the study, the tuned one.
+pub(crate) fn compared(study: &Study, tuned: Scene) -> [Scene; 3] {
+    [Scene { damper: None, ..tuned }, study.scene, tuned]
+}
+
 /// Writes `band.csv` and `band.svg`, and returns their rows, if the objective has a band; `tuned` is the scene with the damper that was found. Missing values (a steady motion
 /// that reaches a wall, a run that fails) are empty fields and gaps.
 pub(super) fn write(study: &Study, tuned: Scene, results: &Directory) -> Result<Option<Rows>, Error> {
@@ -35,7 +40,7 @@ pub(super) fn write(study: &Study, tuned: Scene, results: &Directory) -> Result<
         FINER * (band.samples - 1) + 1
     };
     let fine = Band { samples, ..band };
-    let scenes = [Scene { damper: None, ..tuned }, study.scene, tuned];
+    let scenes = compared(study, tuned);
     let worst = scenes.map(|scene| energy(study, scene, term));
     let single = Objective { omega: None, ..term.clone() };
     let rows: Rows = (0..samples)

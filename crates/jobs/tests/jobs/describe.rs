@@ -2,8 +2,9 @@
 
 use crate::band::ssvi_band;
 use retune_jobs::describe;
+use retune_jobs::simulate::simulate;
 use retune_study::read::from_text;
-use retune_testkit::desk::{committed, global};
+use retune_testkit::desk::{committed, global, tiny};
 use serde_json::{Value, json};
 
 #[track_caller]
@@ -53,4 +54,27 @@ fn contract_every_part_of_an_objective_is_described() {
     let words = said(&global(sum, json!({})));
     assert!(words.contains("weighted sum of 2 objectives"), "{words}");
     assert!(words.contains("1 times E1max, omega = 6.28 rad/s"), "{words}");
+}
+
+/// A strong dashpot is told where the model of a run is told, and what its steps are; a weak one, or another method, is not.
+#[test]
+fn contract_runs_in_long_steps_say_what_is_left_out() {
+    let left_out =
+        "longer ones once the fast part of the motion, that of a strong dashpot, has decayed and is left out";
+    let mut study = tiny();
+    study["scene"]["damper"]["c2"] = json!(1e7);
+    let words = said(&study);
+    assert!(words.contains(left_out) && !words.contains("refused"), "{words}");
+    let model = |study: &Value| {
+        let study = from_text(&study.to_string(), "study.json").expect("a study");
+        let words = simulate(&study, None).expect("a run").to_string();
+        words.lines().find(|line| line.starts_with("model")).expect("the model").to_owned()
+    };
+    let told = model(&study);
+    assert!(told.ends_with("; longer steps once the fast part of the motion, that of a strong dashpot, has decayed and is left out"), "{told}");
+    assert!(!said(&tiny()).contains("left out"));
+    assert_eq!(model(&tiny()), "model       with contacts");
+    study["scene"]["damper"]["c2"] = json!(232);
+    study["solver"] = json!({ "method": "dop853" });
+    assert_eq!(model(&study), "model       with contacts");
 }

@@ -3,7 +3,7 @@
 use crate::{found, request};
 use retune_jobs::Silent;
 use retune_jobs::losses::{Losses, Point, Tuning, losses};
-use retune_model::Measure;
+use retune_model::{Design, Measure};
 use retune_testkit::desk::{Desk, tiny};
 use retune_testkit::observers::{good, refused};
 use retune_testkit::verified;
@@ -33,7 +33,9 @@ fn contract_each_damper_is_compared_at_each_restitution() {
     let found = found(good(losses(&request(&desk, "study.json", "out"), &Silent)));
     let quantity = found.study.quantity();
     assert_eq!(quantity, Measure::Energy);
-    for tuning in Tuning::ALL {
+    let tunings = found.tunings();
+    assert!(tunings.len() == 4 && !tunings.contains(&Tuning::Study), "the structure is the paper's");
+    for tuning in tunings {
         let restitutions: Vec<f64> = found.of(tuning).map(|point| point.restitution).collect();
         assert_eq!(restitutions, [1.0, 0.7], "{tuning:?}");
         let [.., without] = of(&found, tuning, 1.0).powers;
@@ -49,6 +51,22 @@ fn contract_each_damper_is_compared_at_each_restitution() {
     assert!(found.of(Tuning::Paper).all(|point| point.impact_speed > 0.0), "the paper's damper strikes");
     let said = verified::holds(&desk, "out", 8);
     assert!(said.contains("losses.csv"), "{said}");
+}
+
+/// The paper's damper means nothing for another structure: that of the study is compared.
+#[test]
+fn contract_an_own_structure_keeps_its_own_damper() {
+    let mut study = lossy(&[0.7]);
+    study["scene"]["primary"]["m1"] = json!(900);
+    let desk = Desk::with(&study);
+    let found = found(good(losses(&request(&desk, "study.json", "out"), &Silent)));
+    assert_eq!(found.tunings(), [Tuning::Study, Tuning::Lossless, Tuning::Hedged, Tuning::Anew]);
+    let kept = of(&found, Tuning::Study, 0.7).design;
+    assert_eq!(Some(kept), found.study.scene.damper.as_ref().map(Design::of));
+    let page = desk.read("out/README.md");
+    assert!(page.contains("The damper of the study: ") && !page.contains("The paper's damper"), "{page}");
+    assert!(desk.read("out/losses.csv").contains("\nof the study,0.7,"));
+    verified::holds(&desk, "out", 8);
 }
 
 #[test]

@@ -88,8 +88,7 @@ class Problem(_core.Core):
     - ``vary`` names the tuned parameters, of k2, c2, D, C and m2; ``bounds`` gives each its smallest and largest value.
     - ``band`` (rad/s) makes the objective the worst over these frequencies, ``samples`` of which are run; ``response`` is "window",
       "steady" or "settled"; ``quantity`` is what is made small; ``objective`` has the further fields of ``optimize.objective``.
-    - ``limits`` has largest allowed values of ``E1max``, ``x1max``, ``v1max``, ``a1max``, ``ground_force``, ``stroke``, ``contact_force``,
-      ``contact_pressure`` and ``cavity`` (SI units), and ``from`` (s).
+    - ``limits`` has largest allowed values of quantities, such as ``stroke``, and of ``cavity`` (SI units), and ``from`` (s).
     - ``surf``, ``coarse``, ``global_search``, ``starts``, ``refine`` say how ``retune.optimize`` searches, and ``solver`` how motions are
       integrated, with the fields of study files.
 

@@ -12,10 +12,15 @@ use retune_model::{Coupled, Measure, PerMeasure};
 
 type Motion<'a> = Magnitude<StructureMotion<'a, Coupled, 4>>;
 
+/// Those of the structure's motion.
+const MOTIONS: [Measure; 4] =
+    [Measure::Displacement, Measure::Velocity, Measure::Acceleration, Measure::GroundForce];
+
 /// The largest values of the measures that are asked for.
 pub struct LargestValues<'a> {
     energy: Option<RunningMaximum<PrimaryEnergy<'a>>>,
-    motions: [Option<Motion<'a>>; 4],
+    /// In the order of [`MOTIONS`].
+    motions: [Option<Motion<'a>>; MOTIONS.len()],
     range: Option<DisplacementRange<'a>>,
 }
 
@@ -42,12 +47,18 @@ impl<'a> LargestValues<'a> {
 
     /// The largest values so far, 0 of what is not watched and before any motion was seen.
     pub fn values(&self) -> PerMeasure<f64> {
-        let energy = self.energy.as_ref().map_or(0.0, |energy| energy.record().value);
-        let [x1, v1, a1, ground] =
-            self.motions.each_ref().map(|motion| motion.as_ref().map_or(0.0, |size| size.record().value));
-        let of_range = |measure| self.range.as_ref().map_or(0.0, |range| range.largest(measure).value);
-        let [stroke, force, pressure] = Measure::OF_DAMPER.map(of_range);
-        PerMeasure([energy, x1, v1, a1, ground, stroke, force, pressure].map(|value| value.max(0.0)))
+        let mut values = PerMeasure::all(0.0);
+        let mut set = |measure, value: f64| values.set(measure, value.max(0.0));
+        if let Some(energy) = &self.energy {
+            set(Measure::Energy, energy.record().value);
+        }
+        for (measure, motion) in MOTIONS.into_iter().zip(&self.motions) {
+            set(measure, motion.as_ref().map_or(0.0, |size| size.record().value));
+        }
+        for measure in Measure::OF_DAMPER {
+            set(measure, self.range.as_ref().map_or(0.0, |range| range.largest(measure).value));
+        }
+        values
     }
 }
 

@@ -1,6 +1,6 @@
 //! Strong dashpots: the fast part of the motion is left out once it has decayed.
 
-use retune_solver::{Settings, Window, simulate};
+use retune_solver::{Settings, Window, least_steps, leaves_out_a_fast_part, simulate};
 use retune_testkit::scenes::{Numbers, SSVI};
 
 /// E1max by the eigenvectors of the linear system in 40 digits: `tests/reference/dashpots.py`.
@@ -15,7 +15,11 @@ fn exact_a_strong_dashpot_in_long_steps() {
         let error = (run.e1_max.value / exact - 1.0).abs();
         assert!(error < 1e-11, "c2 {c2}: {} is off by {error:e}", run.e1_max.value);
         assert!(run.work.steps < 2000, "c2 {c2}: {} steps", run.work.steps);
+        assert!(leaves_out_a_fast_part(&scene, 100.0), "c2 {c2}");
+        assert!(least_steps(&scene, 100.0) > 2000.0, "c2 {c2}: those of the whole flow");
     }
+    assert!(!leaves_out_a_fast_part(&SSVI.scene(), 100.0), "no strong dashpot");
+    assert!(!leaves_out_a_fast_part(&SSVI.bare_scene(), 100.0), "no damper");
 }
 
 #[test]

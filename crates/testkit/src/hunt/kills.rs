@@ -3,22 +3,19 @@
 
 use super::Hunt;
 use crate::desk::{Desk, committed, tiny};
+use retune_model::drawn_number;
 use serde_json::json;
 use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// A generator of numbers in [0, 1) (Vigna's SplitMix64): the moments are the same in every run of the tests.
+/// Numbers in [0, 1): the moments are the same in every run of the tests.
 struct Draw(u64);
 
 impl Draw {
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+        drawn_number(&mut self.0)
     }
 }
 

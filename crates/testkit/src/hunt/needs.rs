@@ -4,27 +4,18 @@
 use super::Hunt;
 use crate::scenes::{Numbers, SSVI};
 use rayon::prelude::*;
-use retune_model::{Measure, NonNegative, PerMeasure, Positive, Scene};
+use retune_model::{Measure, NonNegative, PerMeasure, Positive, Scene, drawn_number};
 use retune_optim::{FrequencyBand, Goal, Objective};
 use retune_solver::{Also, Ask, Settings, Window, extremes};
 
 /// Shares by which what is told may be below the scan.
 const SHORT: [f64; 4] = [1e-6, 1e-4, 1e-3, 1e-2];
 
-/// Number `i` of a sequence, in [0, 1).
-fn draw(seed: &mut u64) -> f64 {
-    *seed = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let mut z = *seed;
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-}
-
 /// A structure of 0.3 to 30 t and 2 to 20 rad/s with a damper near its tuning, in gaps of a share of its stroke or without walls; its band
 /// and its window, the later half of so many periods.
 pub fn drawn(number: u64, walls: bool, periods: f64) -> (Scene, FrequencyBand, Window) {
     let mut seed = number.wrapping_mul(7919) + u64::from(walls);
-    let mut between = |from: f64, to: f64| from * (to / from).powf(draw(&mut seed));
+    let mut between = |from: f64, to: f64| from * (to / from).powf(drawn_number(&mut seed));
     let (m1, natural, share) = (between(300.0, 30_000.0), between(2.0, 20.0), between(0.01, 0.1));
     let (k1, m2) = (m1 * natural * natural, share * m1);
     let c1 = 2.0 * between(0.002, 0.05) * m1 * natural;

@@ -1,7 +1,7 @@
 //! What a page is made of: the study, the stages of its search, and what came out of them.
 
 use crate::certify::Measured;
-use crate::tune::band::Rows;
+use crate::tune::band::{self, Rows};
 use crate::tune::global::Explored;
 use crate::tune::optimum::Optimum;
 use crate::tune::refine::Refined;
@@ -47,9 +47,8 @@ impl Findings<'_> {
         &self.optimum.certificate.measured
     }
 
-    /// The three scenes of every comparison, in the order of `band.csv`: no damper, that of the study, the tuned one.
     pub fn scenes(&self) -> [Scene; 3] {
-        [Scene { damper: None, ..self.tuned }, self.study.scene, self.tuned]
+        band::compared(self.study, self.tuned)
     }
 
     /// Computes what the tuned damper is compared with, by the same objective and regardless of limits.
