@@ -21,7 +21,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from pages import OVERFLOW, PATIENCE, Browser, said
+from pages import OVERFLOW, PATIENCE, Browser, look, said
 
 ROOT = Path(__file__).resolve().parent.parent
 RESULTS = "results/ssvi"
@@ -310,6 +310,21 @@ def try_it(program, shots):
         page.js(f"document.querySelector('[data-write={what}]').click()")
         checks.that(f"{begin} is a figure", saved_text(begin).startswith("<svg"))
     checks.that("that of the response has the pinned design", ">A<" in (downloads / "ssvi-response.svg").read_text())
+    words = written("command")
+    page.js("document.querySelector('dialog').close(); document.querySelector('[data-write=json]').click()")
+    checks.that("the saved run is what `--json` prints", saved_text("ssvi-run.json") == simulated(program, words + " --json"), words)
+    page.js("(e => { e.value = 'stroke'; e.dispatchEvent(new Event('change')); })(document.getElementById('quantity'))")
+    page.known()
+    explained = page.text("#response-part")
+    checks.that("curves of another quantity say what they are of", explained == "The largest stroke of the damper, from rest on.", explained)
+    checks.that("there is none without a damper", "no damper" not in page.text("#response-key"), page.text("#response-key"))
+    page.js("document.querySelector('[data-write=report]').click()")
+    report = saved_text("ssvi-explored.html")
+    checks.that("the report has the page's figures and its curves", "stroke over frequency" in report and page.text("#text").strip().split("\n")[-1] in report)
+    faults = look(browser, downloads / "ssvi-explored.html", 390, "dark", shots)
+    checks.that("and nothing of it is beyond a narrow window", not faults, faults)
+    page.js("(e => { e.value = 'E1max'; e.dispatchEvent(new Event('change')); })(document.getElementById('quantity'))")
+    page.known()
     lines = written("python")
     ours, theirs = page.text("#text").strip(), simulated(program, python_command(lines)).strip()
     checks.that("the lines of Python name the run that the page shows", ours == theirs, f"{lines}\n{theirs}")
@@ -337,15 +352,15 @@ def try_it(program, shots):
 
     for width in WIDTHS:
         for scheme in ["light", "dark"]:
-            look = Page(browser, explorer.address, width, scheme)
-            look.click("#pin-A")
-            look.until("!!document.querySelector('#figures th.a')")
-            seen = look.js(OVERFLOW)
-            faults = look.messages() + seen["beyond"] + ([f"{seen['over']} px too wide"] if seen["over"] > 0 else [])
+            shown = Page(browser, explorer.address, width, scheme)
+            shown.click("#pin-A")
+            shown.until("!!document.querySelector('#figures th.a')")
+            seen = shown.js(OVERFLOW)
+            faults = shown.messages() + seen["beyond"] + ([f"{seen['over']} px too wide"] if seen["over"] > 0 else [])
             checks.that(f"{width} px, {scheme}: no message, nothing beyond the window", not faults, faults)
             if shots:
-                look.shot(shots / f"explore-{width}-{scheme}.png")
-            look.close()
+                shown.shot(shots / f"explore-{width}-{scheme}.png")
+            shown.close()
     own_structure(program, browser, checks, shots)
     tune(program, browser, checks)
     follow_motions(program, browser, checks, shots)
@@ -392,6 +407,21 @@ def own_structure(program, browser, checks, shots):
     # The address follows a moment after what it tells of.
     page.open(page.until("location.hash.includes('k2=130000&') && location.hash.includes('own=') && location.href"))
     checks.that("a reload from the address has the structure", page.text("#text") == before and page.text("#study") == "own", page.text("#study"))
+    page.js(f"{form}.open = true")
+    put("limits", "x1max = 0.4 kN")
+    send()
+    page.until("!document.getElementById('own-problem').hidden")
+    words = page.text("#own-problem")
+    checks.that("a limit in a wrong unit is refused", "x1max" in words and "0.4 kN" in words, words)
+    put("limits", "x1max = 0.4 mm, stroke = 15 mm")
+    send()
+    page.until("document.getElementById('quantity').textContent.includes('x1max, limited')")
+    page.known()
+    checks.that("sliders have the numbers of the structure", page.value("m2") == 800 and page.value("k1") > 6e6, page.value("k1"))
+    page.js("(e => { e.value = 'x1max'; e.dispatchEvent(new Event('change')); })(document.getElementById('quantity'))")
+    page.known()
+    words = page.text("#response-part")
+    checks.that("a limit is told with what it covers", words.endswith("The study's limit: 0.0004 m from 25 s on."), words)
     page.js("document.querySelector('[name=damper][value=ssvi]').click()")
     page.known()
     checks.that("its SSVI NES has walls", page.value("D") > 0 and "contacts" in page.text("#text"), page.text("#text"))

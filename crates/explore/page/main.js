@@ -6,9 +6,9 @@ import { build, mark, refresh } from "./controls.js";
 import { Drawing } from "./drawing.js";
 import { Figures } from "./figures.js";
 import { Link } from "./link.js";
-import { Own } from "./own.js";
+import { Own, sent } from "./own.js";
 import { Phase } from "./phase.js";
-import { asked, begin, controls, copy, place, remember, value } from "./place.js";
+import { asked, begin, controls, copy, know, place, quantities, quantity, remember, value } from "./place.js";
 import { Response } from "./response.js";
 import { copyText, download } from "./save.js";
 import { Tuning } from "./tuning.js";
@@ -22,10 +22,11 @@ let resting = false; // whether what does not move with the hand waits to be dra
 let latest = null;
 let tuningHere = false;
 let begun = false;
+let wrong = false; // whether the structure in the address is none
 let fresh = false; // whether a structure of one's own has been sent, whose damper and numbers are to be shown
 
 const series = new Series($("series"), (span) => show(span, null));
-const response = new Response($("response"), $("response-key"), (omega) => {
+const response = new Response($("response"), $("response-key"), $("response-part"), (omega) => {
     place.set.omega = omega;
     refresh();
     turned();
@@ -53,15 +54,17 @@ function turned() {
     tell("asked", id);
     response.at(omega());
     remember();
-    link.send({ look: { id, place: asked(), span: place.span, columns: series.columns(), branches: place.branches } });
+    link.send({ look: { id, place: asked(), span: place.span, columns: series.columns(), branches: place.branches, quantity: quantity().name } });
 }
 
 const answers = {
     hello(answer) {
         hello = answer;
+        know(answer);
         if (!begun) begin(answer);
+        if (wrong) place.own = null;
         if (place.own && !answer.own) {
-            link.send({ own: { structure: place.own } });
+            link.send({ own: { structure: sent(place.own) } });
             return;
         }
         if (fresh) {
@@ -76,10 +79,9 @@ const answers = {
         $("study").textContent = answer.study;
         document.title = `${answer.study}: Retune explore`;
         figures.begin(answer);
-        response.begin(answer);
         $("from-rest").hidden = !answer.motions;
-        followed();
         dampers();
+        followed();
         build($("controls"), turned, problem);
         SLOTS.forEach((_, slot) => place.pins[slot] && pin(slot));
         pressed(place.span ? null : "window");
@@ -130,7 +132,10 @@ const answers = {
         if (answer.own) {
             own.refuse(answer.problem, answer.field);
             place.own = hello.own ? place.own : null;
-            if (!begun) answers.hello(hello);
+            if (!begun) {
+                wrong = true;
+                answers.hello(hello);
+            }
             return;
         }
         if (answer.tuning) running(false);
@@ -158,8 +163,8 @@ const answers = {
 };
 
 const own = new Own($("own"), $("own-problem"), (structure) => {
-    [place.own, fresh] = [structure, true];
-    link.send({ own: { structure } });
+    [place.own, fresh, wrong] = [structure, true, false];
+    link.send({ own: { structure: sent(structure) } });
 });
 
 const link = new Link(
@@ -215,7 +220,26 @@ $("follow").addEventListener("change", ({ target }) => {
     turned();
 });
 
+// The quantity of the curves, of those that the damper has. Those of another are asked for anew.
+function curved() {
+    const now = quantity();
+    $("quantity").replaceChildren(...quantities().map(({ name, words, limit }) => new Option(`${name.replace("_", " ")}${limit === null ? "" : ", limited"}`, name, false, name === now.name)));
+    $("quantity").title = now.words;
+    if (response.quantity === now) return;
+    const another = response.quantity && response.quantity.name !== now.name;
+    response.begin(hello.band, now);
+    response.show();
+    if (another) SLOTS.forEach((_, slot) => place.pins[slot] && pin(slot));
+}
+
+$("quantity").addEventListener("change", ({ target }) => {
+    place.quantity = target.value === hello.quantity.name ? null : target.value;
+    curved();
+    turned();
+});
+
 function dampers() {
+    curved();
     for (const input of $("dampers").querySelectorAll("input")) input.checked = input.value === place.damper;
     $("tune").disabled = place.damper === "none" || tuning.running;
 }
@@ -251,7 +275,7 @@ function pin(slot) {
     const button = $(`pin-${SLOTS[slot]}`);
     button.setAttribute("aria-pressed", "true");
     button.textContent = `Unpin ${SLOTS[slot]}`;
-    link.send({ pin: { slot, place: asked(place.pins[slot]) } });
+    link.send({ pin: { slot, place: asked(place.pins[slot]), quantity: quantity().name } });
 }
 
 function unpin(whose) {
@@ -293,7 +317,7 @@ $("save").addEventListener("click", ({ target }) => {
     if (!what) return;
     $("save").open = false;
     if (what === "curves") download(`${hello.study}-response.csv`, response.csv());
-    else link.send({ write: { place: asked(), what, pins: place.pins.map((pin) => pin && asked(pin)) } });
+    else link.send({ write: { place: asked(), what, pins: place.pins.map((pin) => pin && asked(pin)), quantity: quantity().name } });
 });
 document.addEventListener("click", ({ target }) => !$("save").contains(target) && ($("save").open = false));
 document.addEventListener("keydown", ({ key }) => key === "Escape" && ($("save").open = false));

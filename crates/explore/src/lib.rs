@@ -33,6 +33,7 @@ pub mod motion;
 mod page;
 pub mod protocol;
 mod refused;
+mod report;
 pub mod response;
 pub mod server;
 pub mod session;

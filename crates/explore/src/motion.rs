@@ -134,6 +134,11 @@ pub fn figures(simulation: &Simulation) -> Value {
     figures.into()
 }
 
+/// One of the figures, as text; a dash where it is none.
+pub fn look_up(figures: &Value, measure: Measure) -> String {
+    figures.get(measure.name()).and_then(Value::as_str).unwrap_or("–").to_owned()
+}
+
 /// The name of the number of impacts.
 pub const IMPACTS: &str = "impacts";
 

@@ -2,6 +2,7 @@
 
 use crate::limits::{MOST_BYTES, MOST_COLUMNS};
 use crate::refused::Refused;
+use retune_model::Measure;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -45,6 +46,9 @@ pub enum Message {
         /// Whether to follow every motion over the band, too.
         #[serde(default)]
         branches: bool,
+        /// What curves are of; what the study makes small if left out.
+        #[serde(default)]
+        quantity: Option<Measure>,
     },
     /// Keep this design for comparison.
     Pin {
@@ -52,6 +56,9 @@ pub enum Message {
         slot: usize,
         /// The design.
         place: Place,
+        /// What its curve is of, as of a look.
+        #[serde(default)]
+        quantity: Option<Measure>,
     },
     /// Tune from here.
     Tune {
@@ -66,15 +73,23 @@ pub enum Message {
     /// End the tuning and keep its best design.
     Stop {},
     /// Write this place down.
-    Write {
-        /// The place.
-        place: Place,
-        /// As what.
-        what: What,
-        /// The pinned designs A and B, for a figure that has them.
-        #[serde(default)]
-        pins: [Option<Place>; 2],
-    },
+    Write(Write),
+}
+
+/// What is to be written down.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Write {
+    /// The place.
+    pub place: Place,
+    /// As what.
+    pub what: What,
+    /// The pinned designs A and B, for what has them.
+    #[serde(default)]
+    pub pins: [Option<Place>; 2],
+    /// What curves are of, as of a look.
+    #[serde(default)]
+    pub quantity: Option<Measure>,
 }
 
 /// Forms in which a place is written down. The page offers them as files; the server writes none.
@@ -93,6 +108,10 @@ pub enum What {
     Picture,
     /// A figure of the response over frequency.
     Response,
+    /// The run as `retune simulate --json` prints it.
+    Json,
+    /// A page with the figures, the curves, the motion and the study.
+    Report,
 }
 
 /// Reads a message.

@@ -4,7 +4,7 @@ use crate::limits::bounded;
 use crate::motion::IMPACTS;
 use crate::protocol::{Answer, DamperKind, Place};
 use crate::refused::Refused;
-use crate::response::{band, of_all_motions};
+use crate::response::{Drawn, band, of_all_motions};
 use retune_jobs::Error;
 use retune_jobs::design::Specification;
 use retune_model::{Contact, Damper, Measure, NonNegative, Parameter, Surfaces, Unit};
@@ -148,6 +148,7 @@ impl Start {
             .with("band", [band.from, band.to])
             .with("window", [study.window.t0.get(), study.window.end.get()])
             .with("quantity", of)
+            .with("quantities", Measure::ALL.map(|quantity| Drawn::of(study, quantity)))
             .with("figures", figures())
             .with("tunes", study.optimize.is_some())
             .with("motions", of_all_motions(study))

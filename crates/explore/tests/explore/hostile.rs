@@ -76,6 +76,7 @@ fn regress_a_span_of_no_length_is_refused() {
             span: Some(span),
             columns: 400,
             branches: false,
+            quantity: None,
         };
         serde_json::to_string(&message).expect("a message")
     };
@@ -114,7 +115,7 @@ proptest! {
         damper in prop::sample::select(vec![DamperKind::None, DamperKind::Tmd, DamperKind::Ssvi]),
     ) {
         let set: Vec<(&str, f64)> = sets.iter().map(|(name, value)| (NAMES[*name], *value)).collect();
-        let message = Message::Look { id: 1, place: place(damper, &set), span, columns, branches: false };
+        let message = Message::Look { id: 1, place: place(damper, &set), span, columns, branches: false, quantity: None };
         let text = serde_json::to_string(&message).expect("a message");
         let Ok(Message::Look { place, span, columns, .. }) = read(&text) else { return Ok(()) };
         let Ok(mut study) = start().at(&place) else { return Ok(()) };
