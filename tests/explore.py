@@ -362,6 +362,7 @@ def try_it(program, shots):
                 shown.shot(shots / f"explore-{width}-{scheme}.png")
             shown.close()
     own_structure(program, browser, checks, shots)
+    moved_by(program, browser, checks, shots)
     tune(program, browser, checks)
     follow_motions(program, browser, checks, shots)
     sleep(browser, explorer, checks)
@@ -434,6 +435,68 @@ def own_structure(program, browser, checks, shots):
         if shots:
             page.shot(shots / f"own-{width}.png")
         page.close()
+    explorer.close()
+
+
+def moved_by(program, browser, checks, shots):
+    """A pulse typed with its units, and a record from a file, in the place of the study's force; a study that has a record."""
+    explorer = Explorer(program)
+    page = Page(browser, explorer.address, downloads=(downloads := Path(tempfile.mkdtemp())))
+    form = "document.querySelector('#forcing form')"
+    put = lambda name, text: page.js(f"(e => {{ e.value = {json.dumps(text)}; e.dispatchEvent(new Event('change')); }})({form}.elements.{name})")
+    page.js("document.getElementById('forcing').open = true")
+    put("kind", "half sine")
+    put("peak", "10 kg")
+    put("duration", "100 ms")
+    page.click("#forcing button")
+    words = page.until("document.querySelector('#forcing .wrong').textContent")
+    checks.that("a pulse in a wrong unit is refused with those that are there", "kg" in words and "N, kN" in words, words)
+    put("peak", "10 kN")
+    page.click("#forcing button")
+    page.until("document.getElementById('frequency').hidden")
+    page.known()
+    charts = page.js("document.querySelectorAll('#series .chart').length")
+    checks.that("the force is drawn under the motion", charts == 5, charts)
+    checks.that("a pulse has no slider of a frequency", not page.js("document.getElementById('number-omega')"))
+    state, address = page.text("#text"), page.until("location.hash.includes('forcing=') && location.href")
+    page.open(address)
+    checks.that("a reload from the address has the pulse", page.text("#text") == state)
+    page.js("document.getElementById('forcing').open = true")
+    put("kind", "record")
+    put("of", "base acceleration")
+    root = page.ask("DOM.getDocument")["root"]["nodeId"]
+    node = page.ask("DOM.querySelector", nodeId=root, selector="#forcing [name=file]")["nodeId"]
+    page.ask("DOM.setFileInputFiles", nodeId=node, files=[str(ROOT / "studies/records/quake.csv")])
+    page.click("#forcing button")
+    page.until("document.getElementById('moved').textContent === 'quake.csv: acceleration of the base'")
+    page.known()
+    page.js("document.querySelector('[data-write=study]').click()")
+    file = downloads / "ssvi-explored.json"
+    end = time.monotonic() + PATIENCE
+    while not (file.is_file() and file.stat().st_size) and time.monotonic() < end:
+        browser.message(time.monotonic() + 0.1)
+    run = subprocess.run([program, "simulate", file], capture_output=True, text=True, check=True).stdout
+    numbers = lambda text: text.strip().split("\n")[1:]
+    checks.that("the saved study has the record in it and gives the page's figures", numbers(run) == numbers(page.text("#text")), run)
+    seen = page.js(OVERFLOW)
+    checks.that("nothing of it is beyond the window", not seen["beyond"] and seen["over"] <= 0, seen)
+    if shots:
+        page.shot(shots / "explore-record.png")
+    page.js("document.getElementById('forcing').open = true")
+    put("kind", "")
+    page.click("#forcing button")
+    page.until("!document.getElementById('frequency').hidden")
+    page.known()
+    checks.that("and back to the study's force", page.text(".hero .number").startswith("225.8 J"), page.text(".hero .number"))
+    checks.that("no message on the console, with a pulse and a record", not page.messages(), page.messages())
+    page.close()
+    explorer.close()
+    explorer = Explorer(program, "studies/quake.json")
+    page = Page(browser, explorer.address)
+    theirs = simulated(program, "retune simulate studies/quake.json").strip()
+    checks.that("a study with a record opens with its figures", page.text("#text").strip() == theirs, page.text("#text"))
+    checks.that("no message on the console, with its record", not page.messages(), page.messages())
+    page.close()
     explorer.close()
 
 

@@ -5,6 +5,7 @@ import { Series, forget } from "./charts.js";
 import { build, mark, refresh } from "./controls.js";
 import { Drawing } from "./drawing.js";
 import { Figures } from "./figures.js";
+import { Forcing } from "./forcing.js";
 import { Link } from "./link.js";
 import { Own, sent } from "./own.js";
 import { Phase } from "./phase.js";
@@ -22,7 +23,10 @@ let resting = false; // whether what does not move with the hand waits to be dra
 let latest = null;
 let tuningHere = false;
 let begun = false;
-let wrong = false; // whether the structure in the address is none
+let forced = false; // whether the session has been told what moves the structure
+let kept = null; // what moved it before, and the text of a record
+let record = null;
+const wrong = { own: false, forcing: false }; // whether what the address has of them is none
 let fresh = false; // whether a structure of one's own has been sent, whose damper and numbers are to be shown
 
 const series = new Series($("series"), (span) => show(span, null));
@@ -37,7 +41,8 @@ const branches = new Branches($("following"));
 const figures = new Figures({ heroes: $("heroes"), table: $("figures"), irregular: $("irregular"), said: $("said"), text: $("text") });
 const tuning = new Tuning({ section: $("tuning"), canvas: $("map"), words: $("map-words"), log: $("log"), result: $("tuned") });
 
-const omega = () => value(hello.controls.find(({ name }) => name === "omega"));
+const frequency = () => hello.controls.find(({ name }) => name === "omega");
+const omega = () => (frequency() ? value(frequency()) : 0); // of a pulse or a record there is none
 
 function problem(words, field = null) {
     $("problem").hidden = !words;
@@ -62,9 +67,14 @@ const answers = {
         hello = answer;
         know(answer);
         if (!begun) begin(answer);
-        if (wrong) place.own = null;
+        if (!begun) for (const part of Object.keys(wrong)) if (wrong[part]) place[part] = null;
         if (place.own && !answer.own) {
             link.send({ own: { structure: sent(place.own) } });
+            return;
+        }
+        if (place.forcing && !forced) {
+            forced = true;
+            link.send({ force: { forcing: place.forcing, text: record } });
             return;
         }
         if (fresh) {
@@ -75,6 +85,10 @@ const answers = {
         if (!begun) $("own").open = !answer.named && !answer.own;
         else if (fresh) $("own").open = false;
         if (place.own) own.show(place.own);
+        forcing.show(place.forcing);
+        forcing.refuse(null);
+        if (begun) forcing.details.open = false;
+        moved(answer);
         [begun, fresh] = [true, false];
         $("study").textContent = answer.study;
         document.title = `${answer.study}: Retune explore`;
@@ -129,11 +143,20 @@ const answers = {
         if (answer.problem) problem(`${answer.whose}: ${answer.problem}`);
     },
     refused(answer) {
+        if (answer.force) {
+            forcing.refuse(answer.problem, answer.field);
+            place.forcing = kept;
+            if (!begun) {
+                wrong.forcing = true;
+                answers.hello(hello);
+            }
+            return;
+        }
         if (answer.own) {
             own.refuse(answer.problem, answer.field);
             place.own = hello.own ? place.own : null;
             if (!begun) {
-                wrong = true;
+                wrong.own = true;
                 answers.hello(hello);
             }
             return;
@@ -163,13 +186,29 @@ const answers = {
 };
 
 const own = new Own($("own"), $("own-problem"), (structure) => {
-    [place.own, fresh, wrong] = [structure, true, false];
+    [place.own, place.forcing, fresh] = [structure, null, true];
     link.send({ own: { structure: sent(structure) } });
 });
+
+const forcing = new Forcing($("forcing"), (said) => {
+    [kept, place.forcing, record, forced, place.span] = [place.forcing, said.forcing, said.text ?? null, true, null];
+    link.send({ force: said });
+});
+
+// What moves the structure, in words; what there is of a motion without a frequency.
+function moved({ forcing, transient }) {
+    const named = place.forcing?.pulse ? `a ${place.forcing.pulse} of ${place.forcing.peak} ${place.forcing.unit ?? forcing.unit} in ${place.forcing.duration} s` : place.forcing?.record;
+    const words = named ?? (forcing ? forcing.words : "its start");
+    $("moved").textContent = named && forcing ? `${named}: ${forcing.words}` : words;
+    $("frequency").hidden = transient;
+    $("crests").hidden = transient;
+    $("drawn-periods").textContent = transient ? "first periods" : "last periods";
+}
 
 const link = new Link(
     (answer) => answers[answer.kind]?.(answer),
     (open) => {
+        if (open) forced = false; // a new session begins with the study's own
         document.body.classList.toggle("lost", !open);
         if (!open) running(false);
         problem(open ? null : "The connection is lost: is `retune explore` still running? This page tries again.");
@@ -180,7 +219,7 @@ const link = new Link(
 function paint(motion) {
     latest = motion;
     series.spread = null; // that of an earlier place
-    series.show(motion, place.damper);
+    series.show(motion, place.damper, hello.forcing);
     tell("painted", motion.id);
     if (!resting) requestAnimationFrame(() => setTimeout(rest));
     resting = true;
@@ -265,7 +304,7 @@ function pressed(name) {
 for (const button of document.querySelectorAll("[data-span]")) {
     button.addEventListener("click", () => {
         const end = hello.window[1];
-        const periods = (12 * 2 * Math.PI) / Math.max(omega(), 1e-9);
+        const periods = 12 * (omega() > 0 ? (2 * Math.PI) / omega() : hello.period);
         const spans = { window: null, run: [0, end], start: [0, Math.min(end, periods)], end: [Math.max(0, end - periods), end] };
         show(spans[button.dataset.span], button.dataset.span);
     });

@@ -1,8 +1,8 @@
 // What the page shows: the structure where it is one's own, the damper, the numbers that differ from the study's, the span of time, the
-// quantity of the curves, whether branches are drawn, and the pinned designs. The address holds all of it, so that a reload or a copy of the
+// quantity of the curves, what moves it where that is not the study's, whether branches are drawn, and the pinned designs. The address holds all of it, so that a reload or a copy of the
 // address shows the same.
 
-export const place = { damper: "ssvi", set: {}, span: null, quantity: null, branches: false, pins: [null, null], own: null };
+export const place = { damper: "ssvi", set: {}, span: null, quantity: null, branches: false, pins: [null, null], own: null, forcing: null };
 
 let hello = null;
 let writing = 0;
@@ -44,6 +44,7 @@ export function begin(said) {
     place.quantity = words.get("quantity");
     place.branches = words.get("branches") === "1";
     place.own = structure(words.get("own"));
+    place.forcing = object(words.get("forcing"));
     place.pins = ["A", "B"].map((slot) => {
         const text = words.get(slot);
         return text ? design(new URLSearchParams(text.replaceAll(";", "&"))) : null;
@@ -52,9 +53,14 @@ export function begin(said) {
 
 // A structure of one's own, as its form has it.
 function structure(text) {
+    const found = object(text);
+    return found && Object.values(found).every((value) => typeof value === "string") ? found : null;
+}
+
+function object(text) {
     try {
         const found = JSON.parse(text);
-        return found && Object.values(found).every((value) => typeof value === "string") ? found : null;
+        return found && typeof found === "object" ? found : null;
     } catch {
         return null;
     }
@@ -82,6 +88,8 @@ export function remember() {
         if (place.quantity) words.push(`quantity=${place.quantity}`);
         if (place.branches) words.push("branches=1");
         if (place.own) words.push(`own=${encodeURIComponent(JSON.stringify(place.own))}`);
+        // A record is too long for an address.
+        if (place.forcing?.pulse) words.push(`forcing=${encodeURIComponent(JSON.stringify(place.forcing))}`);
         place.pins.forEach((pin, slot) => pin && words.push(`${"AB"[slot]}=${written(pin, ";")}`));
         history.replaceState(null, "", `#${words.join("&")}`);
     }, 150);

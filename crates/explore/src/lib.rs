@@ -26,6 +26,7 @@
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
 pub mod branches;
+pub mod forcing;
 mod http;
 pub mod kind;
 pub mod limits;

@@ -1,6 +1,6 @@
 #![doc = include_str!("../PROTOCOL.md")]
 
-use crate::limits::{MOST_BYTES, MOST_COLUMNS};
+use crate::limits::{MOST_BYTES, MOST_COLUMNS, MOST_RECORD};
 use crate::refused::Refused;
 use retune_model::Measure;
 use serde::{Deserialize, Serialize};
@@ -70,6 +70,14 @@ pub enum Message {
         /// Its fields: m1, f1, zeta, force, band, mass and so on.
         structure: BTreeMap<String, Value>,
     },
+    /// Move the structure by a pulse or a record, or again by what the study has.
+    Force {
+        /// The fields of `scene.forcing`; none for that of the study.
+        forcing: Option<serde_json::Map<String, Value>>,
+        /// The text of the file with the record.
+        #[serde(default)]
+        text: Option<String>,
+    },
     /// End the tuning and keep its best design.
     Stop {},
     /// Write this place down.
@@ -114,14 +122,18 @@ pub enum What {
     Report,
 }
 
+/// How a message begins that may hold a record.
+const RECORD: &str = "{\"force\":";
+
 /// Reads a message.
 ///
 /// # Errors
 /// It is too long, no message, or has a field that is out of range.
 pub fn read(text: &str) -> Result<Message, Refused> {
-    if text.len() > MOST_BYTES {
+    let most = if text.starts_with(RECORD) { MOST_RECORD } else { MOST_BYTES };
+    if text.len() > most {
         let length = text.len();
-        return Err(Refused::whole(format!("a message of {length} bytes: at most {MOST_BYTES} are read")));
+        return Err(Refused::whole(format!("a message of {length} bytes: at most {most} are read")));
     }
     let message: Message = serde_json::from_str(text).map_err(Refused::whole)?;
     match &message {

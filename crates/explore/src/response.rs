@@ -177,6 +177,11 @@ impl Curve {
     /// # Errors
     /// The work has become stale.
     pub fn worst(&self, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<Option<[f64; 2]>, Stale> {
+        if self.study.scene.forcing.is_transient() {
+            // One run is all there is.
+            let value = self.at(0.0);
+            return if is_stale() { Err(Stale) } else { Ok((!value.is_nan()).then_some([value, 0.0])) };
+        }
         let value = |omega: f64| match self.at(omega) {
             _ if is_stale() => Err(Some(Stale)),
             value if value.is_nan() => Err(None),
@@ -232,7 +237,8 @@ pub fn worst(study: &Study, whose: &str, is_stale: &(dyn Fn() -> bool + Sync)) -
 fn largest(study: &Study, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<Option<Value>, Stale> {
     let Band { from, to, samples } = band(study);
     let [Ok(from), Ok(to)] = [from, to].map(Positive::new) else { return Ok(None) };
-    let omega = Some(FrequencyBand { from, to, samples, relative: false });
+    let omega =
+        (!study.scene.forcing.is_transient()).then_some(FrequencyBand { from, to, samples, relative: false });
     let goal = Goal { objective: Objective { omega, ..term(study) }, ..study.window.window().into() };
     let found = goal.needs(&study.scene, &study.solver.settings(), &|| !is_stale());
     if is_stale() {

@@ -1,7 +1,7 @@
 //! The server: it listens on the loopback address alone, and each connection has a thread of its own.
 
 use crate::http::{self, Verdict};
-use crate::limits::{MOST_BYTES, MOST_PAGES};
+use crate::limits::{MOST_PAGES, MOST_RECORD};
 use crate::protocol::Answer;
 use crate::session;
 use crate::start::Start;
@@ -204,8 +204,8 @@ fn socket(stream: TcpStream, begun: Vec<u8>, start: &Start) -> std::io::Result<(
     let config = WebSocketConfig::default()
         .read_buffer_size(4096)
         .write_buffer_size(0)
-        .max_message_size(Some(MOST_BYTES))
-        .max_frame_size(Some(MOST_BYTES));
+        .max_message_size(Some(MOST_RECORD))
+        .max_frame_size(Some(MOST_RECORD));
     let write = Arc::new(Mutex::new(stream.try_clone()?));
     let duplex = || Ok::<_, std::io::Error>(Duplex { read: stream.try_clone()?, write: Arc::clone(&write) });
     let mut reader = WebSocket::from_partially_read(duplex()?, begun, Role::Server, Some(config));

@@ -10,7 +10,7 @@ use crate::start::Start;
 use crate::{branches, texts, tuning};
 use retune_model::{Measure, NonNegative};
 use retune_study::Study;
-use serde_json::Value;
+use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering::SeqCst};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -47,6 +47,8 @@ struct Mail {
 pub struct Session<'a> {
     /// What it starts from, until the page begins with another structure.
     start: Mutex<Arc<Start>>,
+    /// The same under its own forcing.
+    own: Mutex<Arc<Start>>,
     send: &'a (dyn Fn(Answer) -> bool + Sync),
     mail: Mutex<Mail>,
     bell: Condvar,
@@ -72,7 +74,8 @@ pub fn serve(
     mut next: impl FnMut() -> Option<String>,
 ) {
     let (mail, bell, shown, tuned) = Default::default();
-    let session = Session { start: Mutex::new(Arc::new(start.clone())), send, mail, bell, shown, tuned };
+    let [begun, own] = [(), ()].map(|()| Mutex::new(Arc::new(start.clone())));
+    let session = Session { start: begun, own, send, mail, bell, shown, tuned };
     session.send(start.hello());
     std::thread::scope(|scope| {
         scope.spawn(|| session.shows());
@@ -90,13 +93,17 @@ pub fn serve(
     });
 }
 
+fn locked<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
+    of.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 impl Session<'_> {
     fn mail(&self) -> MutexGuard<'_, Mail> {
-        self.mail.lock().unwrap_or_else(PoisonError::into_inner)
+        locked(&self.mail)
     }
 
     fn start(&self) -> Arc<Start> {
-        Arc::clone(&self.start.lock().unwrap_or_else(PoisonError::into_inner))
+        Arc::clone(&locked(&self.start))
     }
 
     /// Begins anew with another structure: what was asked of the one before is dropped.
@@ -104,16 +111,35 @@ impl Session<'_> {
         match Start::own(structure) {
             Err(refused) => self.send(Answer::from(refused).with("own", true)),
             Ok(start) => {
-                let hello = start.hello();
-                *self.start.lock().unwrap_or_else(PoisonError::into_inner) = Arc::new(start);
-                let mut mail = self.mail();
-                *mail = Mail { ended: mail.ended, ..Mail::default() };
-                drop(mail);
-                self.shown.fetch_add(1, SeqCst);
-                self.tuned.fetch_add(1, SeqCst);
-                self.send(hello);
+                *locked(&self.own) = Arc::new(start.clone());
+                self.go_on(start);
             }
         }
+    }
+
+    /// Goes on under a pulse or a record, or again under what the study has.
+    fn force(&self, forcing: Option<Map<String, Value>>, text: Option<&str>) {
+        let own = Arc::clone(&locked(&self.own));
+        let start = match forcing {
+            None => Ok((*own).clone()),
+            Some(forcing) => own.under(forcing, text),
+        };
+        match start {
+            Err(refused) => self.send(Answer::from(refused).with("force", true)),
+            Ok(start) => self.go_on(start),
+        }
+    }
+
+    /// What was asked of the study before is dropped.
+    fn go_on(&self, start: Start) {
+        let hello = start.hello();
+        *locked(&self.start) = Arc::new(start);
+        let mut mail = self.mail();
+        *mail = Mail { ended: mail.ended, ..Mail::default() };
+        drop(mail);
+        self.shown.fetch_add(1, SeqCst);
+        self.tuned.fetch_add(1, SeqCst);
+        self.send(hello);
     }
 
     fn send(&self, answer: Answer) {
@@ -148,6 +174,7 @@ impl Session<'_> {
                 self.tuned.fetch_add(1, SeqCst);
             }
             Message::Own { structure } => self.begin(&structure),
+            Message::Force { forcing, text } => self.force(forcing, text.as_deref()),
             Message::Stop {} => {
                 self.tuned.fetch_add(1, SeqCst);
             }
@@ -249,14 +276,16 @@ impl Session<'_> {
         self.rest(DRAWN, is_stale)?;
         let curve = Curve::of(&study, quantity);
         let without = (at_no_frequency(&bare(&study)), quantity);
-        if known.bare.as_ref() != Some(&without) {
+        // A motion without a frequency has no response over frequencies.
+        let over_band = !study.scene.forcing.is_transient();
+        if over_band && known.bare.as_ref() != Some(&without) {
             let curve = Curve::of(&without.0, quantity);
             if curve.is_there() {
                 send(curve.answer("none", CURVES[1], is_stale)?)?;
             }
             known.bare = Some(without);
         }
-        if known.response.is_none() {
+        if over_band && known.response.is_none() {
             send(curve.answer("now", CURVES[0], is_stale)?)?;
         }
         self.rest(RESTED, is_stale)?;
@@ -271,7 +300,9 @@ impl Session<'_> {
         };
         if known.response.is_none() {
             send(worst(&study, "now", is_stale)?)?;
-            send(curve.answer("now", CURVES[1], is_stale)?.with("fine", true))?;
+            if over_band {
+                send(curve.answer("now", CURVES[1], is_stale)?.with("fine", true))?;
+            }
             known.response = Some(drawn);
         }
         if irregular && known.spread.as_ref() != Some(&(study.clone(), span)) {
@@ -311,7 +342,9 @@ impl Session<'_> {
             }
         };
         let curve = Curve::of(&study, pin.quantity.unwrap_or_else(|| study.quantity()));
-        self.send(curve.answer(whose, CURVES[1], is_stale)?.with("fine", true));
+        if !study.scene.forcing.is_transient() {
+            self.send(curve.answer(whose, CURVES[1], is_stale)?.with("fine", true));
+        }
         self.send(kind(&study).0.with("whose", whose));
         self.send(worst(&study, whose, is_stale)?);
         Ok(())

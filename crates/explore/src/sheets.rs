@@ -1,11 +1,13 @@
 //! Figures to take away: those of the page, drawn as the figures of all results are.
 
+use crate::forcing::{curve, forced};
 use crate::refused::Refused;
 use crate::response::{CURVES, Curve, Stale, allowed, bare, parts};
+use crate::thin::Thin;
 use retune_jobs::amount::{self, measured};
 use retune_jobs::summary::MadeBy;
 use retune_model::Measure;
-use retune_report::colour::{BLACK, BLUE, GREEN, GREY, VERMILION};
+use retune_report::colour::{BLACK, BLUE, GREEN, GREY, PURPLE, VERMILION};
 use retune_report::{Axis, Chart, Dash, Key, Layer, Scale, Sheet, Stroke, Width};
 use retune_solver::Window;
 use retune_study::{Study, design_words, hertz_and_rpm};
@@ -51,11 +53,24 @@ pub fn motion(study: &Study) -> Result<Sheet, Refused> {
     }
     charts.push(chart("E1, J", &[(2, BLUE)], 90.0));
     if study.scene.damper.is_some_and(|damper| damper.contact.is_some()) {
-        charts.push(chart("contact force, N", &[(3, VERMILION), (4, GREY)], 115.0));
+        charts.push(chart("contact force, N", &[(3, VERMILION), (4, PURPLE)], 90.0));
+    }
+    if let Some(forcing) = forced(&study.scene.forcing) {
+        let label = ["name", "unit"].map(|field| forcing[field].as_str().unwrap_or_default().to_owned());
+        let Thin { t, columns: [values] } = curve(&study.scene.forcing, [from, to], COLUMNS);
+        let y = Axis::around(label.join(", "), Scale::Linear, values.iter().copied());
+        let line = Layer::line(t.into_iter().zip(values), Stroke::new(GREY, 0.8, Dash::Solid));
+        charts.push(Chart::of(Axis::linear("t, s", (from, to)), y, vec![line], 90.0));
+    }
+    if let Some(last) = charts.last_mut() {
+        last.height = 115.0; // with the numbers of the abscissa
     }
     Ok(Sheet {
         title: "Motion".to_owned(),
-        description: format!("Displacement, energy and contact forces over time. {}", words(study)),
+        description: format!(
+            "Displacement, energy, contact forces and what moves the structure over time. {}",
+            words(study)
+        ),
         width: Width::Page,
         charts,
         columns: 1,

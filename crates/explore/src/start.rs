@@ -1,16 +1,18 @@
 //! The study that a session starts from, and what becomes of it when a page changes its damper and its numbers.
 
+use crate::forcing::forced;
 use crate::limits::bounded;
-use crate::motion::IMPACTS;
+use crate::motion::{IMPACTS, period};
 use crate::protocol::{Answer, DamperKind, Place};
 use crate::refused::Refused;
 use crate::response::{Drawn, band, of_all_motions};
 use retune_jobs::Error;
 use retune_jobs::design::Specification;
-use retune_model::{Contact, Damper, Measure, NonNegative, Parameter, Surfaces, Unit};
-use retune_study::{Rule, Setting, Study, StudyError};
+use retune_model::{Contact, Damper, Forcing, Measure, NonNegative, Parameter, Scene, Surfaces, Unit};
+use retune_optim::Objective;
+use retune_study::{Rule, Setting, Span, Study, StudyError, read_record};
 use serde::Serialize;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -21,11 +23,13 @@ const DEFAULT: &str = include_str!("study.json");
 #[derive(Clone, Debug)]
 pub struct Start {
     study: Study,
-    /// What was named on the command line.
+    /// What was named on the command line, as long as its study is followed.
     pub file: Option<String>,
     damper: Damper,
     /// Whether it is a structure that was given in words.
     is_own: bool,
+    /// Whether a study was named on the command line.
+    is_named: bool,
 }
 
 /// A number that a page can turn.
@@ -48,6 +52,9 @@ pub struct Control {
     /// The dampers that have it.
     pub dampers: &'static [DamperKind],
 }
+
+/// The fields of a pulse and of a record.
+const GIVEN: [&str; 8] = ["pulse", "record", "of", "peak", "duration", "unit", "scale", "column"];
 
 /// The numbers that a page can turn, in its order.
 const TURNED: [Parameter; 12] = [
@@ -85,6 +92,7 @@ impl Start {
         let default = retune_study::read::from_text(DEFAULT, "ssvi.json")?;
         let study = path.map(retune_study::read).transpose()?;
         let file = path.map(|path| path.display().to_string());
+        let is_named = file.is_some();
         let none = || StudyError::Rule { file: "ssvi.json".to_owned(), rule: Rule::NoDamper };
         let other = default.scene.damper.ok_or_else(none)?;
         let study = study.unwrap_or(default);
@@ -97,7 +105,7 @@ impl Start {
             let contact = Surfaces::for_mass(own.mass).ok().map(Contact::Hertz);
             Damper { rest_distance, clearance, contact, ..own }
         };
-        Ok(Self { study, file, damper, is_own: false })
+        Ok(Self { study, file, damper, is_own: false, is_named })
     }
 
     /// From a structure in words, with Den Hartog's TMD on it; the gaps and the walls of its SSVI NES are scaled as `retune design` does.
@@ -125,7 +133,39 @@ impl Start {
             file: None,
             damper,
             is_own: true,
+            is_named: false,
         })
+    }
+
+    /// The same moved by a pulse or a record, from its start until the structure is at rest again.
+    ///
+    /// # Errors
+    /// It is none, or has a field that is not one of it.
+    pub fn under(&self, forcing: Map<String, Value>, text: Option<&str>) -> Result<Self, Refused> {
+        let stray = forcing.keys().find(|name| !GIVEN.contains(&name.as_str()));
+        if let Some(name) = stray {
+            return Err(Refused::of(name, format!("is not allowed here: give {}", GIVEN.join(", "))));
+        }
+        let mut forcing: Forcing = serde_json::from_value(Value::Object(forcing)).map_err(Refused::whole)?;
+        match text {
+            Some(text) => {
+                read_record(&mut forcing, text).map_err(|problem| Refused::of("record", problem))?;
+            }
+            None if forcing.record_mut().is_some() => {
+                return Err(Refused::of("record", "the text of its file is missing"));
+            }
+            None => {}
+        }
+        let scene = Scene { forcing, ..self.study.scene };
+        let window = Span::settled(&scene).map_err(Refused::whole)?;
+        let mut study = Study { scene, window, ..self.study.clone() };
+        if let Some(optimize) = &mut study.optimize {
+            let quantity = optimize.objective.quantity();
+            (optimize.objective, optimize.limits.from) =
+                (Objective { quantity, ..Objective::default() }, None);
+        }
+        study.check().map_err(Refused::whole)?;
+        Ok(Self { study: bounded(study)?, file: None, ..self.clone() })
     }
 
     /// The study as it was read.
@@ -144,7 +184,10 @@ impl Start {
             .with("damper", self.damper_kind())
             .with("controls", self.controls())
             .with("own", self.is_own)
-            .with("named", self.file.is_some())
+            .with("transient", study.scene.forcing.is_transient())
+            .with("forcing", forced(&study.scene.forcing))
+            .with("period", period(study))
+            .with("named", self.is_named)
             .with("band", [band.from, band.to])
             .with("window", [study.window.t0.get(), study.window.end.get()])
             .with("quantity", of)

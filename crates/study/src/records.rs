@@ -3,7 +3,7 @@
 use super::format::Study;
 use super::rule::Rule;
 use retune_model::{Column, Forcing, Of, Record, RecordFile, Samples, Scene, Unit, unit};
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
 /// Reads the record of a scene, if it names a file with one; a path that is not absolute begins at `base`.
@@ -50,20 +50,35 @@ fn whole(of: Of, record: &Record, base: &Path) -> Result<Record, String> {
     let source = record.source();
     let path = base.join(&source.file);
     let file = std::fs::File::open(&path).map_err(|error| format!("cannot be read: {error}"))?;
+    Ok(record.with(samples(of, source, file)?))
+}
+
+/// The samples of a file, by the ending of its name.
+fn samples(of: Of, source: &RecordFile, file: impl Read) -> Result<Samples, String> {
     let lines = Lines { file: BufReader::new(file), line: String::new(), number: 0 };
-    let is_at2 = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("at2"));
-    let samples = if is_at2 { at2(of, source, lines)? } else { csv(of, source, lines)? };
-    Ok(record.with(samples))
+    let extension = Path::new(&source.file).extension();
+    let is_at2 = extension.is_some_and(|extension| extension.eq_ignore_ascii_case("at2"));
+    if is_at2 { at2(of, source, lines) } else { csv(of, source, lines) }
+}
+
+/// Reads the record of a forcing, if it names a file with one, from the text of that file. A study is then written with its samples.
+///
+/// # Errors
+/// The text holds no record: the line, and what is wrong with it.
+pub fn read_text(forcing: &mut Forcing, text: &str) -> Result<(), String> {
+    let Some((of, record)) = forcing.record_mut() else { return Ok(()) };
+    *record = record.with(samples(of, record.source(), text.as_bytes())?).whole();
+    Ok(())
 }
 
 /// The lines of a file, one at a time.
-struct Lines {
-    file: BufReader<std::fs::File>,
+struct Lines<R> {
+    file: BufReader<R>,
     line: String,
     number: usize,
 }
 
-impl Lines {
+impl<R: Read> Lines<R> {
     /// The next line with something on it.
     fn next(&mut self) -> Result<Option<&str>, String> {
         loop {
@@ -86,7 +101,7 @@ fn factor(source: &RecordFile, own: Unit) -> f64 {
 }
 
 /// CSV: a header, the time in the first column.
-fn csv(of: Of, source: &RecordFile, mut lines: Lines) -> Result<Samples, String> {
+fn csv(of: Of, source: &RecordFile, mut lines: Lines<impl Read>) -> Result<Samples, String> {
     let factor = factor(source, of.units()[0]);
     let Some(head) = lines.next()? else { return Err("is empty".to_owned()) };
     let separator = [',', ';', '\t'].into_iter().find(|mark| head.contains(*mark)).unwrap_or(',');
@@ -131,7 +146,7 @@ fn column(wanted: Option<&Column>, names: &[&str]) -> Result<usize, String> {
 }
 
 /// PEER's AT2: accelerations in g after a head of four lines, the last of which tells their number and their distance.
-fn at2(of: Of, source: &RecordFile, mut lines: Lines) -> Result<Samples, String> {
+fn at2(of: Of, source: &RecordFile, mut lines: Lines<impl Read>) -> Result<Samples, String> {
     if of != Of::BaseAcceleration {
         return Err("an AT2 file holds accelerations: give \"of\": \"base acceleration\"".to_owned());
     }
@@ -209,7 +224,7 @@ mod tests {
     #[test]
     fn exact_records_are_read_in_si_units() {
         let none = serde_json::json!({});
-        let found = samples("a.csv", "t,a,b\n0,1,4\n0.5,-2,5\n2,3,6\n", none.clone()).expect("a record");
+        let found = samples("si.csv", "t,a,b\n0,1,4\n0.5,-2,5\n2,3,6\n", none.clone()).expect("a record");
         assert_eq!((found.values(), found.time(1), found.end()), (&[1.0, -2.0, 3.0][..], 0.5, 2.0));
         let more = serde_json::json!({ "column": "b", "unit": "g", "scale": -2.0 });
         let found = samples("b.csv", "\u{feff}t;a;\"b\"\n\n0;1;4\n0.1;2;5\n", more).expect("a record");

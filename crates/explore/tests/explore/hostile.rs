@@ -125,7 +125,7 @@ proptest! {
         prop_assert!(0.0 <= span[0] && span[0] < span[1] && span[1] <= study.window.end.get(), "{span:?}");
         if let Ok(shown) = motion::look(&study, span, columns) {
             // Six rows at most of each of five quantities in a column, and one column beyond the last.
-            for (name, most) in [("t", 12 * (columns + 1)), ("contacts", 8 * (columns + 1)), ("drawn.t", 1200), ("crest.x1", 4001)] {
+            for (name, most) in [("t", 12 * (columns + 1)), ("forcing", 4 * (columns + 1) + 2), ("contacts", 8 * (columns + 1)), ("drawn.t", 1200), ("crest.x1", 4001)] {
                 let rows = shown.numbers(name).map_or(0, |numbers| numbers.len());
                 prop_assert!(rows <= most, "{name}: {rows} of {most}");
             }

@@ -1,6 +1,6 @@
 //! The protocol of a page: what is refused, what is bounded, and that the latest message wins.
 
-use retune_explore::limits::{MOST_BYTES, MOST_COLUMNS};
+use retune_explore::limits::{MOST_BYTES, MOST_COLUMNS, MOST_RECORD};
 use retune_explore::protocol::{Answer, DamperKind, Message, Place, What, Write, read};
 use retune_explore::session::serve;
 use retune_explore::start::Start;
@@ -363,6 +363,88 @@ fn contract_the_run_and_a_report_are_saved() {
         assert!(page.contains(part), "{part}");
     }
     assert!(!page.contains("B, worst") && !page.contains("<script"));
+}
+
+/// A pulse and a record take the place of the study's forcing, whatever the damper: what is shown is the run of a study that says so.
+#[test]
+fn contract_a_pulse_or_a_record_moves_the_structure() {
+    let pulse = json!({ "pulse": "half sine", "of": "force", "peak": 10, "unit": "kN", "duration": 0.1 });
+    let record = json!({ "record": "a.csv", "of": "base acceleration", "unit": "g" });
+    let force = |forcing: &Value, text: Option<&str>| {
+        json!({ "force": { "forcing": forcing, "text": text } }).to_string()
+    };
+    let look = look(1, &[("k2", 300.0)]);
+    for (forcing, text) in [(&pulse, None), (&record, Some("t,a\n0,0\n0.5,0.2\n1.5,-0.1\n2,0\n"))] {
+        let found = answers(vec![force(forcing, text), look.clone()], |answer| kind(answer) == "done");
+        let hello = found.iter().rfind(|answer| kind(answer) == "hello").expect("another study");
+        assert_eq!([hello.get("transient"), hello.get("own")], [Some(&json!(true)), Some(&json!(false))]);
+        assert!(
+            found.iter().all(|answer| kind(answer) != "response"),
+            "a transient has no response over frequencies"
+        );
+        let motion = found.iter().find(|answer| kind(answer) == "motion").expect("a motion");
+        let Value::Object(fields) = forcing.clone() else { panic!("an object") };
+        let start = start().under(fields, text).expect("a forcing");
+        let saved = text_of(&start, &[("k2", 300.0)]);
+        let study =
+            retune_study::read::from_text(&saved, "ssvi.json").expect("a study that needs no other file");
+        let run = simulate(&study, None).expect("a run");
+        assert_eq!(motion.get("text"), Some(&json!(run.to_string())));
+        let worst = found.iter().find(|answer| kind(answer) == "worst").expect("a worst");
+        let energy = run.summary.largest(Measure::Energy);
+        assert_eq!(worst.get("value").and_then(Value::as_f64), Some(energy));
+        let curve = motion.numbers("forcing").expect("a curve").into_iter().fold(0.0, f64::max);
+        let peak = if text.is_some() { 0.2 * 9.80665 } else { 10_000.0 };
+        assert!((curve / peak - 1.0).abs() < 1e-2, "{curve} {peak}");
+    }
+    // Back to the study's own, after a slip that changed nothing.
+    let slip = json!({ "pulse": "half sine", "of": "force", "peak": 10, "unit": "kg", "duration": 0.1 });
+    let messages = vec![force(&pulse, None), force(&slip, None), force(&Value::Null, None), look];
+    let found = answers(messages, |answer| kind(answer) == "done");
+    let refused = found.iter().find(|answer| kind(answer) == "refused").expect("a slip");
+    assert!(
+        refused.get("force") == Some(&json!(true))
+            && refused.get("problem").is_some_and(|words| words.to_string().contains("N, kN"))
+    );
+    let last = found.iter().rfind(|answer| kind(answer) == "hello").expect("the study");
+    assert_eq!(last.get("transient"), Some(&json!(false)));
+}
+
+fn text_of(start: &Start, set: &[(&str, f64)]) -> String {
+    text(start, &place(DamperKind::Ssvi, set), What::Study)
+}
+
+/// What is no pulse and no record is refused with its field; no file of the server is read.
+#[test]
+fn contract_what_is_no_pulse_and_no_record_is_refused() {
+    let under = |forcing: Value, text: Option<&str>| {
+        let Value::Object(fields) = forcing else { panic!("an object") };
+        start().under(fields, text).expect_err("refused")
+    };
+    let file = json!({ "record": concat!(env!("CARGO_MANIFEST_DIR"), "/../../studies/records/quake.csv"), "of": "force" });
+    assert_eq!(under(file.clone(), None).problem, "record: the text of its file is missing");
+    for (text, words) in [
+        ("", "is empty"),
+        ("t,a\n0,1\n", "samples"),
+        ("t,a\n0,1\n0,2\n", "does not come after"),
+        ("t,a\n0,x\n", "line 2"),
+    ] {
+        let refused = under(file.clone(), Some(text));
+        assert_eq!(refused.field.as_deref(), Some("record"));
+        assert!(refused.problem.contains(words), "{}", refused.problem);
+    }
+    let harmonics = json!({ "harmonics": [], "of": "force", "duration": 1 });
+    assert_eq!(under(harmonics, None).field.as_deref(), Some("harmonics"));
+    let long = json!({ "pulse": "rectangle", "of": "force", "peak": 1, "duration": 1e6 });
+    assert_eq!(under(long, None).field.as_deref(), Some("T"));
+    let padded = format!("{{\"force\":{{\"forcing\":null{}}}}}", " ".repeat(MOST_BYTES));
+    assert!(read(&padded).is_ok(), "a record may be long");
+    assert!(
+        read(&format!("{{\"force\":{}", " ".repeat(MOST_RECORD)))
+            .expect_err("too long")
+            .problem
+            .contains("at most")
+    );
 }
 
 /// A figure of the response has what the page has: each curve, and which design it is.
