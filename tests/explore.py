@@ -2,6 +2,7 @@
 
     python3 tests/explore.py RETUNE [--shots DIR]          what must hold
     python3 tests/explore.py RETUNE --bench [SECONDS]      how fast it is: results/explore/bench.txt
+    python3 tests/explore.py RETUNE --picture FILE         the picture of the tutorial: docs/figures/explore.png
 
 Needs chromium (or the browser named in $CHROMIUM). RETUNE is the program.
 """
@@ -702,6 +703,22 @@ def bench(program, seconds):
     return 0
 
 
+# The tuned damper where it strikes once a period, beside the tuned TMD.
+PICTURED = "#damper=ssvi&omega=5.9&A=damper=tmd;k2=600;c2=259.8"
+
+
+def picture(program, file):
+    """The picture of the tutorial: as it is at one moment, for the drawing does not move."""
+    browser, explorer = opened(), Explorer(program)
+    page = Page(browser, explorer.address + PICTURED)
+    page.until("!!document.querySelector('#figures td.a')")
+    page.js("document.querySelector('#response-key .A') && document.getElementById('pause').click()")
+    page.shot(file)
+    browser.close()
+    explorer.close()
+    return 0
+
+
 def met(holds):
     return "met" if holds else "MISSED"
 
@@ -710,11 +727,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("retune", metavar="RETUNE", help="the program")
     parser.add_argument("--shots", type=Path, metavar="DIR", help="where pictures of the page go")
+    parser.add_argument("--picture", type=Path, metavar="FILE", help="write a picture of the page, and no more")
     parser.add_argument("--bench", type=float, nargs="?", const=600, metavar="SECONDS", help="measure, with so many seconds of dragging")
     args = parser.parse_args()
     program = str(Path(args.retune).resolve())
     if args.shots:
         args.shots.mkdir(parents=True, exist_ok=True)
+    if args.picture:
+        return picture(program, args.picture)
     return bench(program, args.bench) if args.bench else try_it(program, args.shots)
 
 
