@@ -30,6 +30,8 @@ pub struct Options {
     pub port: u16,
     /// Whether the page is opened in a browser.
     pub browser: bool,
+    /// Most threads of all pages together; all cores by default.
+    pub threads: Option<u16>,
 }
 
 /// Serves the page until the process ends.
@@ -38,6 +40,10 @@ pub struct Options {
 /// The study is wrong, or the port is taken.
 pub fn explore(options: &Options, watch: &dyn Observer) -> Result<(), Error> {
     let server = Server::open(options)?;
+    if let Some(threads) = options.threads {
+        // Of the process, whose pages share them; where it has some already, these stay.
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global();
+    }
     watch.result(&format!("{}\nends with Ctrl-C", server.address()))?;
     if options.browser
         && let Err(error) = open::that_detached(server.address())

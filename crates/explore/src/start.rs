@@ -49,6 +49,10 @@ pub struct Control {
     pub range: [f64; 2],
     /// Whether the slider is logarithmic.
     pub log: bool,
+    /// The smallest and the largest value that the study's search may give it, where it has them.
+    pub bounds: [Option<f64>; 2],
+    /// Whether it is of walls and contacts, which few turn.
+    pub of_contact: bool,
     /// The dampers that have it.
     pub dampers: &'static [DamperKind],
 }
@@ -56,8 +60,8 @@ pub struct Control {
 /// The fields of a pulse and of a record.
 const GIVEN: [&str; 8] = ["pulse", "record", "of", "peak", "duration", "unit", "scale", "column"];
 
-/// The numbers that a page can turn, in its order.
-const TURNED: [Parameter; 12] = [
+/// The numbers that a page shows first, in its order; all others of the catalogue follow.
+const FIRST: [Parameter; 12] = [
     Parameter::Omega,
     Parameter::K2,
     Parameter::C2,
@@ -269,10 +273,21 @@ impl Start {
                 value,
                 range,
                 log,
+                bounds: self.bounds(parameter),
+                of_contact: parameter.is_of_contact(),
                 dampers: dampers(parameter),
             })
         };
-        TURNED.into_iter().filter_map(control).collect()
+        let others = Parameter::ALL.into_iter().filter(|parameter| !FIRST.contains(parameter));
+        FIRST.into_iter().chain(others).filter_map(control).collect()
+    }
+
+    /// The ends that the search of the study has.
+    fn bounds(&self, parameter: Parameter) -> [Option<f64>; 2] {
+        let search = self.study.optimize.as_ref().filter(|optimize| optimize.vary.contains(&parameter));
+        search
+            .and_then(|optimize| optimize.bounds.get(parameter))
+            .map_or([None; 2], |(lower, upper)| [Some(lower), upper])
     }
 
     /// The range of a slider: of the search's bounds or the band, else about the value.
@@ -281,9 +296,11 @@ impl Start {
             let band = band(&self.study);
             return [band.from, band.to];
         }
-        let bounds = self.study.optimize.as_ref().and_then(|optimize| optimize.bounds.get(parameter));
-        match (bounds, parameter) {
-            (Some((lower, Some(upper))), _) => [lower, upper],
+        match (self.bounds(parameter), parameter) {
+            ([Some(lower), Some(upper)], _) => [lower, upper],
+            (_, Parameter::Nu1 | Parameter::Nu2 | Parameter::Nu3 | Parameter::Nu4) => [0.0, 0.49],
+            (_, Parameter::Restitution) => [0.1, 1.0],
+            (_, Parameter::M1) => [0.25 * value, 4.0 * value],
             (_, Parameter::K1) => [0.4 * value, 2.5 * value],
             (_, Parameter::M2) => [0.25 * value, 4.0 * value],
             (_, parameter) if parameter.is_gap() || Parameter::AMPLITUDES.contains(&parameter) => {

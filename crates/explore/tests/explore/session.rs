@@ -6,7 +6,7 @@ use retune_explore::session::serve;
 use retune_explore::start::Start;
 use retune_explore::{Refused, response, texts};
 use retune_jobs::simulate::simulate;
-use retune_model::Measure;
+use retune_model::{Measure, Parameter};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -412,6 +412,30 @@ fn contract_a_pulse_or_a_record_moves_the_structure() {
 
 fn text_of(start: &Start, set: &[(&str, f64)]) -> String {
     text(start, &place(DamperKind::Ssvi, set), What::Study)
+}
+
+/// Every parameter that the scene has can be turned, within what a study may have.
+#[test]
+fn contract_every_parameter_of_the_scene_can_be_turned() {
+    let controls = start().controls();
+    let scene = start().study().scene;
+    let there: Vec<&str> =
+        Parameter::ALL.iter().filter(|one| one.of(&scene).is_some()).map(|one| one.symbol()).collect();
+    assert!(there.len() >= 20 && controls.len() == there.len(), "{} {}", controls.len(), there.len());
+    for control in &controls {
+        assert!(there.contains(&control.name), "{}", control.name);
+        for value in control.range {
+            let found = start().at(&place(DamperKind::Ssvi, &[(control.name, value)]));
+            assert!(found.is_ok(), "{} = {value}: {:?}", control.name, found.err());
+        }
+    }
+    let k2 = controls.iter().find(|control| control.name == "k2").expect("a control");
+    assert_eq!((k2.bounds, k2.of_contact), ([Some(10.0), Some(600.0)], false));
+    assert!(
+        controls
+            .iter()
+            .any(|control| control.name == "R" && control.of_contact && control.bounds == [None; 2])
+    );
 }
 
 /// What is no pulse and no record is refused with its field; no file of the server is read.
