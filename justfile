@@ -155,6 +155,12 @@ test-explore *OPTIONS:
     cargo build --release --package retune
     python3 tests/explore.py target/release/retune "$@"
 
+# Make the picture of the explorer in the tutorial anew, docs/figures/explore.png (needs python3 and chromium)
+[group('develop')]
+picture-explore:
+    cargo build --release --package retune
+    python3 tests/explore.py target/release/retune --picture docs/figures/explore.png
+
 # Run the commands of docs/tutorial.md and compare their output with the page (needs python3 with SciPy)
 [group('develop')]
 test-tutorial:

@@ -2,6 +2,7 @@
 
     python3 tests/explore.py RETUNE [--shots DIR]          what must hold
     python3 tests/explore.py RETUNE --bench [SECONDS]      how fast it is: results/explore/bench.txt
+    python3 tests/explore.py RETUNE --picture FILE         the picture of the tutorial: docs/figures/explore.png
 
 Needs chromium (or the browser named in $CHROMIUM). RETUNE is the program.
 """
@@ -21,7 +22,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from pages import OVERFLOW, PATIENCE, Browser, said
+from pages import OVERFLOW, PATIENCE, Browser, look, said
 
 ROOT = Path(__file__).resolve().parent.parent
 RESULTS = "results/ssvi"
@@ -310,6 +311,21 @@ def try_it(program, shots):
         page.js(f"document.querySelector('[data-write={what}]').click()")
         checks.that(f"{begin} is a figure", saved_text(begin).startswith("<svg"))
     checks.that("that of the response has the pinned design", ">A<" in (downloads / "ssvi-response.svg").read_text())
+    words = written("command")
+    page.js("document.querySelector('dialog').close(); document.querySelector('[data-write=json]').click()")
+    checks.that("the saved run is what `--json` prints", saved_text("ssvi-run.json") == simulated(program, words + " --json"), words)
+    page.js("(e => { e.value = 'stroke'; e.dispatchEvent(new Event('change')); })(document.getElementById('quantity'))")
+    page.known()
+    explained = page.text("#response-part")
+    checks.that("curves of another quantity say what they are of", explained == "The largest stroke of the damper, from rest on.", explained)
+    checks.that("there is none without a damper", "no damper" not in page.text("#response-key"), page.text("#response-key"))
+    page.js("document.querySelector('[data-write=report]').click()")
+    report = saved_text("ssvi-explored.html")
+    checks.that("the report has the page's figures and its curves", "stroke over frequency" in report and page.text("#text").strip().split("\n")[-1] in report)
+    faults = look(browser, downloads / "ssvi-explored.html", 390, "dark", shots)
+    checks.that("and nothing of it is beyond a narrow window", not faults, faults)
+    page.js("(e => { e.value = 'E1max'; e.dispatchEvent(new Event('change')); })(document.getElementById('quantity'))")
+    page.known()
     lines = written("python")
     ours, theirs = page.text("#text").strip(), simulated(program, python_command(lines)).strip()
     checks.that("the lines of Python name the run that the page shows", ours == theirs, f"{lines}\n{theirs}")
@@ -337,16 +353,17 @@ def try_it(program, shots):
 
     for width in WIDTHS:
         for scheme in ["light", "dark"]:
-            look = Page(browser, explorer.address, width, scheme)
-            look.click("#pin-A")
-            look.until("!!document.querySelector('#figures th.a')")
-            seen = look.js(OVERFLOW)
-            faults = look.messages() + seen["beyond"] + ([f"{seen['over']} px too wide"] if seen["over"] > 0 else [])
+            shown = Page(browser, explorer.address, width, scheme)
+            shown.click("#pin-A")
+            shown.until("!!document.querySelector('#figures th.a')")
+            seen = shown.js(OVERFLOW)
+            faults = shown.messages() + seen["beyond"] + ([f"{seen['over']} px too wide"] if seen["over"] > 0 else [])
             checks.that(f"{width} px, {scheme}: no message, nothing beyond the window", not faults, faults)
             if shots:
-                look.shot(shots / f"explore-{width}-{scheme}.png")
-            look.close()
+                shown.shot(shots / f"explore-{width}-{scheme}.png")
+            shown.close()
     own_structure(program, browser, checks, shots)
+    moved_by(program, browser, checks, shots)
     tune(program, browser, checks)
     follow_motions(program, browser, checks, shots)
     sleep(browser, explorer, checks)
@@ -392,6 +409,21 @@ def own_structure(program, browser, checks, shots):
     # The address follows a moment after what it tells of.
     page.open(page.until("location.hash.includes('k2=130000&') && location.hash.includes('own=') && location.href"))
     checks.that("a reload from the address has the structure", page.text("#text") == before and page.text("#study") == "own", page.text("#study"))
+    page.js(f"{form}.open = true")
+    put("limits", "x1max = 0.4 kN")
+    send()
+    page.until("!document.getElementById('own-problem').hidden")
+    words = page.text("#own-problem")
+    checks.that("a limit in a wrong unit is refused", "x1max" in words and "0.4 kN" in words, words)
+    put("limits", "x1max = 0.4 mm, stroke = 15 mm")
+    send()
+    page.until("document.getElementById('quantity').textContent.includes('x1max, limited')")
+    page.known()
+    checks.that("sliders have the numbers of the structure", page.value("m2") == 800 and page.value("k1") > 6e6, page.value("k1"))
+    page.js("(e => { e.value = 'x1max'; e.dispatchEvent(new Event('change')); })(document.getElementById('quantity'))")
+    page.known()
+    words = page.text("#response-part")
+    checks.that("a limit is told with what it covers", words.endswith("The study's limit: 0.0004 m from 25 s on."), words)
     page.js("document.querySelector('[name=damper][value=ssvi]').click()")
     page.known()
     checks.that("its SSVI NES has walls", page.value("D") > 0 and "contacts" in page.text("#text"), page.text("#text"))
@@ -404,6 +436,68 @@ def own_structure(program, browser, checks, shots):
         if shots:
             page.shot(shots / f"own-{width}.png")
         page.close()
+    explorer.close()
+
+
+def moved_by(program, browser, checks, shots):
+    """A pulse typed with its units, and a record from a file, in the place of the study's force; a study that has a record."""
+    explorer = Explorer(program)
+    page = Page(browser, explorer.address, downloads=(downloads := Path(tempfile.mkdtemp())))
+    form = "document.querySelector('#forcing form')"
+    put = lambda name, text: page.js(f"(e => {{ e.value = {json.dumps(text)}; e.dispatchEvent(new Event('change')); }})({form}.elements.{name})")
+    page.js("document.getElementById('forcing').open = true")
+    put("kind", "half sine")
+    put("peak", "10 kg")
+    put("duration", "100 ms")
+    page.click("#forcing button")
+    words = page.until("document.querySelector('#forcing .wrong').textContent")
+    checks.that("a pulse in a wrong unit is refused with those that are there", "kg" in words and "N, kN" in words, words)
+    put("peak", "10 kN")
+    page.click("#forcing button")
+    page.until("document.getElementById('frequency').hidden")
+    page.known()
+    charts = page.js("document.querySelectorAll('#series .chart').length")
+    checks.that("the force is drawn under the motion", charts == 5, charts)
+    checks.that("a pulse has no slider of a frequency", not page.js("document.getElementById('number-omega')"))
+    state, address = page.text("#text"), page.until("location.hash.includes('forcing=') && location.href")
+    page.open(address)
+    checks.that("a reload from the address has the pulse", page.text("#text") == state)
+    page.js("document.getElementById('forcing').open = true")
+    put("kind", "record")
+    put("of", "base acceleration")
+    root = page.ask("DOM.getDocument")["root"]["nodeId"]
+    node = page.ask("DOM.querySelector", nodeId=root, selector="#forcing [name=file]")["nodeId"]
+    page.ask("DOM.setFileInputFiles", nodeId=node, files=[str(ROOT / "studies/records/quake.csv")])
+    page.click("#forcing button")
+    page.until("document.getElementById('moved').textContent === 'quake.csv: acceleration of the base'")
+    page.known()
+    page.js("document.querySelector('[data-write=study]').click()")
+    file = downloads / "ssvi-explored.json"
+    end = time.monotonic() + PATIENCE
+    while not (file.is_file() and file.stat().st_size) and time.monotonic() < end:
+        browser.message(time.monotonic() + 0.1)
+    run = subprocess.run([program, "simulate", file], capture_output=True, text=True, check=True).stdout
+    numbers = lambda text: text.strip().split("\n")[1:]
+    checks.that("the saved study has the record in it and gives the page's figures", numbers(run) == numbers(page.text("#text")), run)
+    seen = page.js(OVERFLOW)
+    checks.that("nothing of it is beyond the window", not seen["beyond"] and seen["over"] <= 0, seen)
+    if shots:
+        page.shot(shots / "explore-record.png")
+    page.js("document.getElementById('forcing').open = true")
+    put("kind", "")
+    page.click("#forcing button")
+    page.until("!document.getElementById('frequency').hidden")
+    page.known()
+    checks.that("and back to the study's force", page.text(".hero .number").startswith("225.8 J"), page.text(".hero .number"))
+    checks.that("no message on the console, with a pulse and a record", not page.messages(), page.messages())
+    page.close()
+    explorer.close()
+    explorer = Explorer(program, "studies/quake.json")
+    page = Page(browser, explorer.address)
+    theirs = simulated(program, "retune simulate studies/quake.json").strip()
+    checks.that("a study with a record opens with its figures", page.text("#text").strip() == theirs, page.text("#text"))
+    checks.that("no message on the console, with its record", not page.messages(), page.messages())
+    page.close()
     explorer.close()
 
 
@@ -609,6 +703,22 @@ def bench(program, seconds):
     return 0
 
 
+# The tuned damper where it strikes once a period, beside the tuned TMD.
+PICTURED = "#damper=ssvi&omega=5.9&A=damper=tmd;k2=600;c2=259.8"
+
+
+def picture(program, file):
+    """The picture of the tutorial: as it is at one moment, for the drawing does not move."""
+    browser, explorer = opened(), Explorer(program)
+    page = Page(browser, explorer.address + PICTURED)
+    page.until("!!document.querySelector('#figures td.a')")
+    page.js("document.querySelector('#response-key .A') && document.getElementById('pause').click()")
+    page.shot(file)
+    browser.close()
+    explorer.close()
+    return 0
+
+
 def met(holds):
     return "met" if holds else "MISSED"
 
@@ -617,11 +727,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("retune", metavar="RETUNE", help="the program")
     parser.add_argument("--shots", type=Path, metavar="DIR", help="where pictures of the page go")
+    parser.add_argument("--picture", type=Path, metavar="FILE", help="write a picture of the page, and no more")
     parser.add_argument("--bench", type=float, nargs="?", const=600, metavar="SECONDS", help="measure, with so many seconds of dragging")
     args = parser.parse_args()
     program = str(Path(args.retune).resolve())
     if args.shots:
         args.shots.mkdir(parents=True, exist_ok=True)
+    if args.picture:
+        return picture(program, args.picture)
     return bench(program, args.bench) if args.bench else try_it(program, args.shots)
 
 

@@ -5,7 +5,7 @@
 A place is a page, a figure, or a directory with all of both below it. Each is opened at 390 and 1200 px, light and dark. A message on the
 console, a file that cannot be loaded, a request that leaves the directory, or a page that is wider than its window is a fault; of a figure
 texts that lie on one another, that are cut off, that are smaller than 11 px where the figure is 1000 px wide, or that can hardly be told from
-what is behind them; of the paper's page a height of more than 12,000 px. Pictures of whole pages go to DIR.
+what is behind them, or more than six lines in one frame; of the paper's page a height of more than 12,000 px. Pictures of whole pages go to DIR.
 """
 
 import argparse
@@ -82,6 +82,37 @@ TEXTS = """(() => {
     for (const caption of document.querySelectorAll('figcaption, table caption')) {
         const { left, right } = caption.getBoundingClientRect();
         if (right - left > document.documentElement.clientWidth || left < 0) faults.push(`the caption "${caption.textContent.trim().slice(0, 30)}" is not in view`);
+    }
+    return faults;
+})()"""
+
+
+# Frames of figures with more than six series: lines of different looks, or names beside the frame. A frame is the last rectangle of its path; a
+# rule, straight across or upright, is no series.
+SERIES = """(() => {
+    const faults = [];
+    for (const svg of document.querySelectorAll('svg.figure')) {
+        if (!svg.getBoundingClientRect().width) continue;
+        const paths = [...svg.querySelectorAll('path[fill="none"]')];
+        const has = (path, name) => path.hasAttribute(name);
+        const within = (a, b) => a.x >= b.x - 2 && a.y >= b.y - 2 && a.x + a.width <= b.x + b.width + 2 && a.y + a.height <= b.y + b.height + 2;
+        const boxes = new Map(paths.map((path) => [path, path.getBBox()]));
+        const isLine = (path) => has(path, 'stroke-dasharray') || (has(path, 'stroke-linecap') && has(path, 'stroke-linejoin'));
+        const lines = paths.filter((path) => isLine(path) && boxes.get(path).width > 0 && boxes.get(path).height > 0);
+        const leaders = paths.filter((path) => path.getAttribute('stroke') === '#999999' && path.getAttribute('stroke-width') === '3' && !isLine(path));
+        for (const path of paths.filter((path) => path.getAttribute('stroke') === '#000000' && !has(path, 'stroke-linejoin'))) {
+            const found = path.getAttribute('d').match(/M(-?\\d+) (-?\\d+)h(\\d+)v(\\d+)h-\\d+z$/);
+            if (!found) continue;
+            const [x, y, width, height] = found.slice(1).map(Number);
+            const frame = { x, y, width, height };
+            const look = (line) => ['stroke', 'stroke-width', 'stroke-dasharray'].map((name) => line.getAttribute(name)).join();
+            const looks = new Set(lines.filter((line) => within(boxes.get(line), frame)).map(look)).size;
+            const begins = ({ x, y, width, height }) => x <= frame.x + frame.width + 1 && x + width > frame.x + frame.width + 1 && x >= frame.x - 2
+                && y + height >= frame.y - 2 && y <= frame.y + frame.height + 2;
+            const names = leaders.filter((line) => begins(boxes.get(line))).length;
+            const count = Math.max(looks, names);
+            if (count > 6) faults.push(`${count} series in one frame`);
+        }
     }
     return faults;
 })()"""
@@ -196,7 +227,7 @@ def look(browser, page, width, scheme, shots):
     faults = [words for event in browser.events if event.get("sessionId") == session and (words := said(event))]
     if seen["over"] > 0 or seen["beyond"]:
         faults.append(f"{seen['over']} px wider than its window: {'; '.join(seen['beyond'])}")
-    texts = js(TEXTS)
+    texts = js(TEXTS) + js(SERIES)
     faults += [*texts[:MOST], *([f"and {len(texts) - MOST} more"] if len(texts) > MOST else [])]
     if width > 500 and seen["height"] > (most := HEIGHTS.get(page.resolve().parent.name, math.inf)):
         faults.append(f"{seen['height']} px high: at most {most}")
@@ -207,8 +238,11 @@ def look(browser, page, width, scheme, shots):
 # A figure with one fault of each kind, and what is to be said of it.
 BAD = """<!doctype html><meta charset="utf-8"><title>bad</title><svg viewBox="0 0 1000 200" width="380" height="76"><path d="M0 0h1000v200h-1000z" fill="#FFFFFF"/>
 <text x="10" y="50" font-size="30">one word</text><text x="60" y="55" font-size="30">another</text><text x="900" y="120" font-size="40">beyond</text>
-<text x="10" y="120" font-size="8">small</text><text x="10" y="180" font-size="30" fill="#EEEEEE">pale</text></svg>"""
-KINDS = ["lie on one another", "is cut off", "has 8 px", "can hardly be seen"]
+<text x="10" y="120" font-size="8">small</text><text x="10" y="180" font-size="30" fill="#EEEEEE">pale</text></svg>
+<svg class="figure" viewBox="0 0 1000 200" width="380" height="76"><path d="M0 50h5M10 10h900v180h-900z" fill="none" stroke="#000000" stroke-width="6"/>LINES</svg>"""
+LINE = '<path d="M20 20l800 {0}" fill="none" stroke="{1}" stroke-width="11" stroke-linejoin="round" stroke-linecap="round"/>'
+BAD = BAD.replace("LINES", "".join(LINE.format(20 * n, f"#00{n}000") for n in range(1, 8)))
+KINDS = ["lie on one another", "is cut off", "has 8 px", "can hardly be seen", "7 series in one frame"]
 
 
 def blind(browser):

@@ -25,7 +25,7 @@ fn main() {
     let start = Start::read(None).expect("the built-in study");
     let place = Place { damper: DamperKind::Ssvi, set: std::collections::BTreeMap::default() };
     let study = start.at(&place).expect("a study");
-    let curve = response::Curve::of(&study);
+    let curve = response::Curve::of(&study, study.quantity());
     let over = |samples: usize| {
         median(|| {
             curve.over(samples, &|| false).expect("not stale");

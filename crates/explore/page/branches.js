@@ -29,15 +29,21 @@ export class Branches {
     }
 
     // The largest value that is drawn.
-    get top() {
-        const values = this.found?.columns.value ?? [];
+    top(quantity) {
+        const values = this.of(quantity);
         return values.reduce((top, value) => (value > top ? value : top), 0);
     }
 
-    draw(u) {
+    // The values of a quantity along them.
+    of(quantity) {
+        return this.found?.columns[quantity] ?? [];
+    }
+
+    draw(u, quantity) {
         if (!this.found?.columns.omega) return;
         const { ctx, bbox } = u;
-        const { omega, value, stable } = this.found.columns;
+        const { omega, stable } = this.found.columns;
+        const value = this.of(quantity);
         const at = (x, y) => [u.valToPos(x, "x", true), u.valToPos(y, "y", true)];
         const ratio = devicePixelRatio;
         ctx.save();
@@ -58,7 +64,8 @@ export class Branches {
         }
         ctx.setLineDash([]);
         ctx.lineWidth = ratio;
-        for (const [kind, x, y] of this.found.events) {
+        for (const [kind, x, , values] of this.found.events) {
+            const y = values[quantity];
             const [colour, shape] = MARKS[kind];
             ctx.beginPath();
             shape(ctx, ...at(x, y), 3.5 * ratio);

@@ -32,6 +32,7 @@ const KINDS = [
     { name: "gap", label: "x2 − x1, m", words: "damper from the structure, with walls and contacts", columns: ["gap"], colours: ["--vermilion"] },
     { name: "E1", label: "E1, J", words: "energy of the structure, with its maximum", columns: ["E1"], colours: ["--blue"] },
     { name: "force", label: "force, N", words: "contact forces on the structure and on the obstacle", columns: ["FconL", "FconR"], colours: ["--vermilion", "--purple"] },
+    { name: "forcing", label: "", words: "what moves the structure", columns: ["forcing"], colours: ["--soft"] },
 ];
 
 export class Series {
@@ -73,7 +74,7 @@ export class Series {
                     cursor: { sync: { key: "time" }, drag: { setScale: false, x: true, y: false }, points: { show: false } },
                     scales: { x: { time: false }, y: { range: (u, least, largest) => this.range(kind, least, largest) } },
                     series: [{}, ...kind.columns.map((_, n) => ({ stroke: () => css(kind.colours[n]), width: 1, points: { show: false } }))],
-                    axes: [axis(last ? "t, s" : null, last ? 22 : 8, last ? { values: worded } : { values: () => [] }), axis(kind.label, 50, { values: worded, space: 22 })],
+                    axes: [axis(last ? "t, s" : null, last ? 22 : 8, last ? { values: worded } : { values: () => [] }), axis(kind.name === "forcing" ? `${this.forcing.name}, ${this.forcing.unit}` : kind.label, 50, { values: worded, space: 22 })],
                     hooks: {
                         drawAxes: [(u) => this.behind(kind, u)],
                         draw: [(u) => this.before(kind, u)],
@@ -107,10 +108,11 @@ export class Series {
     }
 
     // Draws a motion. Which charts there are follows from what there is to see.
-    show(motion, damper) {
+    show(motion, damper, forcing) {
         this.motion = motion;
-        const kinds = KINDS.filter(({ name }) => name === "x1" || name === "E1" || (damper !== "none" && (name === "gap" || motion.walls)));
-        const wanted = kinds.map((kind) => kind.name).join(" ");
+        this.forcing = forcing;
+        const kinds = KINDS.filter(({ name }) => name === "x1" || name === "E1" || (name === "forcing" && forcing) || (damper !== "none" && (name === "gap" || motion.walls)));
+        const wanted = `${kinds.map((kind) => kind.name).join(" ")} ${forcing?.name} ${forcing?.unit}`;
         if (wanted !== this.shown) this.build(kinds);
         this.shown = wanted;
         for (const chart of this.charts) this.fill(chart);
@@ -120,7 +122,7 @@ export class Series {
     fill(chart) {
         const { columns, span } = this.motion;
         chart.batch(() => {
-            chart.setData([columns.t, ...chart.kind.columns.map((name) => columns[name])], false);
+            chart.setData([chart.kind.name === "forcing" ? columns["forcing.t"] : columns.t, ...chart.kind.columns.map((name) => columns[name])], false);
             chart.setScale("x", { min: span[0], max: span[1] });
         });
     }
@@ -139,6 +141,7 @@ export class Series {
             x1: `largest ${run.x1max.toPrecision(4)} m`,
             gap: `${run.impacts.primary} impacts on the structure, ${run.impacts.obstacle} on the obstacle`,
             E1: `largest ${run.E1max.toPrecision(4)} J at ${run.t_E1max.toPrecision(4)} s`,
+            forcing: this.forcing?.words ?? "",
             force: `largest ${run.force_max.primary.toPrecision(4)} N and ${run.force_max.obstacle.toPrecision(4)} N`,
         };
         for (const { kind, place } of this.charts) place.setAttribute("aria-label", `${kind.words} ${over}: ${said[kind.name]}`);

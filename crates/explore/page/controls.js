@@ -15,7 +15,10 @@ function number({ range: [from, to], log }, share) {
     return Math.min(to, Math.max(from, Number(exact.toFixed(digits))));
 }
 
-export const shown = (number) => String(Number(number.toPrecision(6)));
+export function shown(number) {
+    const rounded = Number(number.toPrecision(6));
+    return Math.abs(rounded) < 1e7 ? String(rounded) : rounded.toExponential().replace("e+", "e");
+}
 
 // A number as it was typed, in the SI unit: alone, or with one of the control's units; NaN where it is none.
 export function read({ units }, text) {
@@ -29,7 +32,11 @@ let rows = [];
 // Makes the controls of the present damper. `changed` is called with the name of what was turned, `refused` with what is wrong with what was
 // typed, and its name.
 export function build(into, changed, refused) {
+    const open = into.querySelector("details")?.open;
     into.replaceChildren();
+    const walls = document.createElement("details");
+    walls.innerHTML = "<summary>Walls and contacts</summary>";
+    walls.open = Boolean(open);
     rows = controls().map((control) => {
         const row = document.createElement("div");
         row.className = "control";
@@ -61,9 +68,10 @@ export function build(into, changed, refused) {
             else if (Number.isFinite(typed)) put(typed);
             else refused(`${control.name}: "${text.value}" is not a number${names.length ? `, alone or in ${names.join(", ")}` : ""}`, control.name);
         });
-        into.append(row);
+        (control.of_contact ? walls : into).append(row);
         return { control, slider, text, row };
     });
+    if (walls.childElementCount > 1) into.append(walls);
     refresh();
 }
 
@@ -73,7 +81,9 @@ export function refresh() {
         const now = value(control);
         const at = Math.round(STEPS * Math.min(1, Math.max(0, share(control, now))));
         if (Number(slider.value) !== at) slider.value = at;
-        if (control.name === "omega") row.querySelector("label span").textContent = `${control.words}: ${Number((now / (2 * Math.PI)).toPrecision(4))} Hz`;
+        const hertz = control.name === "omega" ? `: ${Number((now / (2 * Math.PI)).toPrecision(4))} Hz` : "";
+        const bound = ["smallest", "largest"].find((_, end) => control.bounds[end] !== null && Math.abs(now - control.bounds[end]) <= 1e-9 * Math.abs(now));
+        row.querySelector("label span").textContent = `${control.words}${hertz}${bound ? `: the ${bound} that the study allows` : ""}`;
         slider.setAttribute("aria-valuetext", `${shown(now)} ${control.unit}`);
         if (document.activeElement !== text || Number(text.value) !== now) text.value = shown(now);
         row.classList.toggle("changed", control.name in place.set);

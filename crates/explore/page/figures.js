@@ -10,7 +10,8 @@ export class Figures {
         this.other = null;
     }
 
-    begin({ quantity, band, figures }) {
+    begin({ quantity, band, figures, transient }) {
+        this.transient = transient;
         this.quantity = quantity;
         this.rows = figures;
         this.band = band;
@@ -55,12 +56,13 @@ export class Figures {
         const { now, quantity, band } = this;
         const worst = this.worst.now;
         const kind = this.kinds.now;
-        const over = `${band.map((end) => Number(end.toPrecision(4))).join(" to ")} rad/s`;
+        const { transient } = this;
+        const over = transient ? "of the run" : `over ${band.map((end) => Number(end.toPrecision(4))).join(" to ")} rad/s`;
         const [value, unit] = worst?.words ? [worst.words, quantity.unit] : ["–", ""];
         const heroes = [
-            [value, unit, `worst ${quantity.name} over ${over}`, worst?.words ? `at ω = ${Number(worst.omega.toPrecision(4))} rad/s` : (worst?.problem ?? "")],
+            [value, unit, `${transient ? "largest" : "worst"} ${quantity.name} ${over}`, worst?.words && !transient ? `at ω = ${Number(worst.omega.toPrecision(4))} rad/s` : (worst?.problem ?? "")],
             [worst?.reduction ? worst.reduction : "–", "", "times less than without a damper", worst?.none ? `which has ${worst.none} ${quantity.unit}` : ""],
-            [kind?.label ?? "–", "", "kind of motion at this ω", kind?.words ?? ""],
+            [kind?.label ?? "–", "", transient ? "kind of motion" : "kind of motion at this ω", kind?.words ?? ""],
         ];
         if (this.other) heroes.push(this.coexisting());
         update(this.heroes, JSON.stringify(heroes), () =>
@@ -78,7 +80,7 @@ export class Figures {
             const among = ends ? ` ${this.spread.members} neighbours within 0.1 % have E1max from ${ends[0]} to ${ends[1]} J.` : "";
             this.irregular.replaceChildren(element("b", "", "One realisation."), ` The motion is irregular: its E1max is one of many.${among}`);
         }
-        const columns = [[`at ω = ${Number((this.omega ?? 0).toPrecision(5))}`, now, ""], ["worst of band, from rest on", worst?.figures, ""]];
+        const columns = [[transient ? "in the window" : `at ω = ${Number((this.omega ?? 0).toPrecision(5))}`, now, ""], [transient ? "from the start on" : "worst of band, from rest on", worst?.figures, ""]];
         for (const whose of ["A", "B"]) {
             if (this.worst[whose]) columns.push([`${whose}, worst`, this.worst[whose].figures, whose.toLowerCase()]);
         }
@@ -91,7 +93,7 @@ export class Figures {
             ["motion", kind?.label ?? "–", "", ...pinned.map((whose) => this.kinds[whose]?.label ?? "–")],
         ];
         // The cells stay while their numbers change: a table that is made anew at every step of a drag is laid out anew.
-        update(this.table, `pinned ${pinned}`, () => rows.map((row, i) => tableRow(row, i, columns, this.rows[i - 1]?.[2])));
+        update(this.table, `pinned ${pinned} ${transient}`, () => rows.map((row, i) => tableRow(row, i, columns, this.rows[i - 1]?.[2])));
         rows.forEach((row, i) => row.forEach((words, j) => write(this.table.children[i].children[j], words)));
     }
 
@@ -109,7 +111,7 @@ export class Figures {
         const { quantity } = this;
         const words = worst?.words ? `worst ${quantity.name} ${worst.words} ${quantity.unit}, ` : "";
         const others = this.other ? `over all motions found ${this.other.words} ${quantity.unit}, ` : "";
-        this.said.textContent = `${words}${others}at this frequency E1max ${this.now.E1max} J, ${this.kinds.now?.label ?? ""}`;
+        this.said.textContent = `${words}${others}${this.transient ? "in the window" : "at this frequency"} E1max ${this.now.E1max} J, ${this.kinds.now?.label ?? ""}`;
     }
 }
 

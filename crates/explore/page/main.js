@@ -5,10 +5,11 @@ import { Series, forget } from "./charts.js";
 import { build, mark, refresh } from "./controls.js";
 import { Drawing } from "./drawing.js";
 import { Figures } from "./figures.js";
+import { Forcing } from "./forcing.js";
 import { Link } from "./link.js";
-import { Own } from "./own.js";
+import { Own, sent } from "./own.js";
 import { Phase } from "./phase.js";
-import { asked, begin, controls, copy, place, remember, value } from "./place.js";
+import { asked, begin, controls, copy, know, place, quantities, quantity, remember, value } from "./place.js";
 import { Response } from "./response.js";
 import { copyText, download } from "./save.js";
 import { Tuning } from "./tuning.js";
@@ -22,10 +23,14 @@ let resting = false; // whether what does not move with the hand waits to be dra
 let latest = null;
 let tuningHere = false;
 let begun = false;
+let forced = false; // whether the session has been told what moves the structure
+let kept = null; // what moved it before, and the text of a record
+let record = null;
+const wrong = { own: false, forcing: false }; // whether what the address has of them is none
 let fresh = false; // whether a structure of one's own has been sent, whose damper and numbers are to be shown
 
 const series = new Series($("series"), (span) => show(span, null));
-const response = new Response($("response"), $("response-key"), (omega) => {
+const response = new Response($("response"), $("response-key"), $("response-part"), (omega) => {
     place.set.omega = omega;
     refresh();
     turned();
@@ -36,7 +41,8 @@ const branches = new Branches($("following"));
 const figures = new Figures({ heroes: $("heroes"), table: $("figures"), irregular: $("irregular"), said: $("said"), text: $("text") });
 const tuning = new Tuning({ section: $("tuning"), canvas: $("map"), words: $("map-words"), log: $("log"), result: $("tuned") });
 
-const omega = () => value(hello.controls.find(({ name }) => name === "omega"));
+const frequency = () => hello.controls.find(({ name }) => name === "omega");
+const omega = () => (frequency() ? value(frequency()) : 0); // of a pulse or a record there is none
 
 function problem(words, field = null) {
     $("problem").hidden = !words;
@@ -53,15 +59,22 @@ function turned() {
     tell("asked", id);
     response.at(omega());
     remember();
-    link.send({ look: { id, place: asked(), span: place.span, columns: series.columns(), branches: place.branches } });
+    link.send({ look: { id, place: asked(), span: place.span, columns: series.columns(), branches: place.branches, quantity: quantity().name } });
 }
 
 const answers = {
     hello(answer) {
         hello = answer;
+        know(answer);
         if (!begun) begin(answer);
+        if (!begun) for (const part of Object.keys(wrong)) if (wrong[part]) place[part] = null;
         if (place.own && !answer.own) {
-            link.send({ own: { structure: place.own } });
+            link.send({ own: { structure: sent(place.own) } });
+            return;
+        }
+        if (place.forcing && !forced) {
+            forced = true;
+            link.send({ force: { forcing: place.forcing, text: record } });
             return;
         }
         if (fresh) {
@@ -72,14 +85,17 @@ const answers = {
         if (!begun) $("own").open = !answer.named && !answer.own;
         else if (fresh) $("own").open = false;
         if (place.own) own.show(place.own);
+        forcing.show(place.forcing);
+        forcing.refuse(null);
+        if (begun) forcing.details.open = false;
+        moved(answer);
         [begun, fresh] = [true, false];
         $("study").textContent = answer.study;
         document.title = `${answer.study}: Retune explore`;
         figures.begin(answer);
-        response.begin(answer);
         $("from-rest").hidden = !answer.motions;
-        followed();
         dampers();
+        followed();
         build($("controls"), turned, problem);
         SLOTS.forEach((_, slot) => place.pins[slot] && pin(slot));
         pressed(place.span ? null : "window");
@@ -127,10 +143,22 @@ const answers = {
         if (answer.problem) problem(`${answer.whose}: ${answer.problem}`);
     },
     refused(answer) {
+        if (answer.force) {
+            forcing.refuse(answer.problem, answer.field);
+            place.forcing = kept;
+            if (!begun) {
+                wrong.forcing = true;
+                answers.hello(hello);
+            }
+            return;
+        }
         if (answer.own) {
             own.refuse(answer.problem, answer.field);
             place.own = hello.own ? place.own : null;
-            if (!begun) answers.hello(hello);
+            if (!begun) {
+                wrong.own = true;
+                answers.hello(hello);
+            }
             return;
         }
         if (answer.tuning) running(false);
@@ -158,13 +186,29 @@ const answers = {
 };
 
 const own = new Own($("own"), $("own-problem"), (structure) => {
-    [place.own, fresh] = [structure, true];
-    link.send({ own: { structure } });
+    [place.own, place.forcing, fresh] = [structure, null, true];
+    link.send({ own: { structure: sent(structure) } });
 });
+
+const forcing = new Forcing($("forcing"), (said) => {
+    [kept, place.forcing, record, forced, place.span] = [place.forcing, said.forcing, said.text ?? null, true, null];
+    link.send({ force: said });
+});
+
+// What moves the structure, in words; what there is of a motion without a frequency.
+function moved({ forcing, transient }) {
+    const named = place.forcing?.pulse ? `a ${place.forcing.pulse} of ${place.forcing.peak} ${place.forcing.unit ?? forcing.unit} in ${place.forcing.duration} s` : place.forcing?.record;
+    const words = named ?? (forcing ? forcing.words : "its start");
+    $("moved").textContent = named && forcing ? `${named}: ${forcing.words}` : words;
+    $("frequency").hidden = transient;
+    $("crests").hidden = transient;
+    $("drawn-periods").textContent = transient ? "first periods" : "last periods";
+}
 
 const link = new Link(
     (answer) => answers[answer.kind]?.(answer),
     (open) => {
+        if (open) forced = false; // a new session begins with the study's own
         document.body.classList.toggle("lost", !open);
         if (!open) running(false);
         problem(open ? null : "The connection is lost: is `retune explore` still running? This page tries again.");
@@ -175,7 +219,7 @@ const link = new Link(
 function paint(motion) {
     latest = motion;
     series.spread = null; // that of an earlier place
-    series.show(motion, place.damper);
+    series.show(motion, place.damper, hello.forcing);
     tell("painted", motion.id);
     if (!resting) requestAnimationFrame(() => setTimeout(rest));
     resting = true;
@@ -215,7 +259,26 @@ $("follow").addEventListener("change", ({ target }) => {
     turned();
 });
 
+// The quantity of the curves, of those that the damper has. Those of another are asked for anew.
+function curved() {
+    const now = quantity();
+    $("quantity").replaceChildren(...quantities().map(({ name, words, limit }) => new Option(`${name.replace("_", " ")}${limit === null ? "" : ", limited"}`, name, false, name === now.name)));
+    $("quantity").title = now.words;
+    if (response.quantity === now) return;
+    const another = response.quantity && response.quantity.name !== now.name;
+    response.begin(hello.band, now);
+    response.show();
+    if (another) SLOTS.forEach((_, slot) => place.pins[slot] && pin(slot));
+}
+
+$("quantity").addEventListener("change", ({ target }) => {
+    place.quantity = target.value === hello.quantity.name ? null : target.value;
+    curved();
+    turned();
+});
+
 function dampers() {
+    curved();
     for (const input of $("dampers").querySelectorAll("input")) input.checked = input.value === place.damper;
     $("tune").disabled = place.damper === "none" || tuning.running;
 }
@@ -241,7 +304,7 @@ function pressed(name) {
 for (const button of document.querySelectorAll("[data-span]")) {
     button.addEventListener("click", () => {
         const end = hello.window[1];
-        const periods = (12 * 2 * Math.PI) / Math.max(omega(), 1e-9);
+        const periods = 12 * (omega() > 0 ? (2 * Math.PI) / omega() : hello.period);
         const spans = { window: null, run: [0, end], start: [0, Math.min(end, periods)], end: [Math.max(0, end - periods), end] };
         show(spans[button.dataset.span], button.dataset.span);
     });
@@ -251,7 +314,7 @@ function pin(slot) {
     const button = $(`pin-${SLOTS[slot]}`);
     button.setAttribute("aria-pressed", "true");
     button.textContent = `Unpin ${SLOTS[slot]}`;
-    link.send({ pin: { slot, place: asked(place.pins[slot]) } });
+    link.send({ pin: { slot, place: asked(place.pins[slot]), quantity: quantity().name } });
 }
 
 function unpin(whose) {
@@ -293,7 +356,7 @@ $("save").addEventListener("click", ({ target }) => {
     if (!what) return;
     $("save").open = false;
     if (what === "curves") download(`${hello.study}-response.csv`, response.csv());
-    else link.send({ write: { place: asked(), what, pins: place.pins.map((pin) => pin && asked(pin)) } });
+    else link.send({ write: { place: asked(), what, pins: place.pins.map((pin) => pin && asked(pin)), quantity: quantity().name } });
 });
 document.addEventListener("click", ({ target }) => !$("save").contains(target) && ($("save").open = false));
 document.addEventListener("keydown", ({ key }) => key === "Escape" && ($("save").open = false));

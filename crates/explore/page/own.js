@@ -2,6 +2,13 @@
 
 const PLACEHOLDERS = { force: "280 N", imbalance: "0.02 kg·m", base: "1 mm", base_acceleration: "0.1 g" };
 
+// The fields as a file of `retune design` has them: limits, "x1max = 2 mm, stroke = 15 mm", each by its name.
+export function sent({ limits, ...structure }) {
+    if (!limits) return structure;
+    const pairs = limits.split(",").map((limit) => limit.split("="));
+    return { ...structure, limits: Object.fromEntries(pairs.map(([name, ...value]) => [name.trim(), value.join("=").trim()])) };
+}
+
 export class Own {
     // `begin` is called with the fields that are filled in.
     constructor(details, problem, begin) {
@@ -33,7 +40,7 @@ export class Own {
         this.problem.textContent = words ?? "";
         if (words) this.details.open = true;
         for (const input of this.form.querySelectorAll("input")) {
-            const own = input.name === "size" ? field in PLACEHOLDERS : input.name === field;
+            const own = input.name === "size" ? field in PLACEHOLDERS : input.name === field?.split(".")[0];
             input.setAttribute("aria-invalid", String(own));
         }
     }

@@ -45,8 +45,9 @@ export class Phase {
         ctx.lineWidth = 1;
         for (const value of ticks(ends[0], Math.max(2, width / 80))) {
             line(ctx, x(value), top, x(value), height - bottom);
+            const half = ctx.measureText(String(value)).width / 2;
             ctx.textAlign = "center";
-            ctx.fillText(String(value), x(value), height - 4);
+            ctx.fillText(String(value), Math.min(x(value), width - half), height - 4);
         }
         for (const value of ticks(ends[1], height / 45)) {
             line(ctx, left, y(value), width - right, y(value));

@@ -1,15 +1,20 @@
-// The response over frequency: this design, no damper, the pinned ones; the present ω as a cursor to drag.
+// The response over frequency: this design, no damper, the pinned ones, and what the study's limit forbids; the present ω as a cursor to
+// drag.
 
 import { axis, css, worded } from "./charts.js";
+import { shown } from "./controls.js";
 import { ticks } from "./phase.js";
 
+// A limit up to so many times the largest value is drawn.
+const NEAR = 3;
 const WHOSE = ["none", "A", "B", "now"];
 const STROKES = { none: ["--ink", [5, 4]], A: ["--blue", []], B: ["--green", []], now: ["--vermilion", []] };
 
 export class Response {
-    constructor(into, key, moved) {
+    constructor(into, key, part, moved) {
         this.into = into;
         this.key = key;
+        this.part = part;
         this.moved = moved;
         this.curves = {};
         this.omega = 0;
@@ -18,7 +23,9 @@ export class Response {
         new ResizeObserver(() => this.chart && this.into.clientWidth !== this.chart.width && this.chart.setSize(this.size())).observe(into);
     }
 
-    begin({ band, quantity }) {
+    // Draws curves of a quantity over a band; those of another are dropped.
+    begin(band, quantity) {
+        if (quantity.name !== this.quantity?.name) this.curves = {};
         this.band = band;
         this.quantity = quantity;
         const series = WHOSE.map((whose) => ({
@@ -43,10 +50,10 @@ export class Response {
                 ...this.size(),
                 legend: { show: false },
                 cursor: { drag: { x: false, y: false }, points: { show: false }, y: false },
-                scales: { x: { time: false, range: () => this.band }, y: { range: (u, least, largest) => [0, 1.06 * (Math.max(largest, this.branches?.top ?? 0) || 1)] } },
+                scales: { x: { time: false, range: () => this.band }, y: { range: (u, least, largest) => [0, this.height(largest)] } },
                 series: [{}, ...series],
-                axes: [axis("ω, rad/s", 22), axis(`${quantity.name}, ${quantity.unit}`, 50, { values: worded, space: 32 }), axis("frequency, Hz", 20, hertz)],
-                hooks: { draw: [(u) => this.branches?.draw(u)] },
+                axes: [axis("ω, rad/s", 22), axis(`${quantity.name.replace("_", " ")}, ${quantity.unit}`, 50, { values: worded, space: 32 }), axis("frequency, Hz", 20, hertz)],
+                hooks: { drawAxes: [(u) => this.forbidden(u)], draw: [(u) => this.branches?.draw(u, this.quantity.name)] },
             },
             [[], ...WHOSE.map(() => [])],
             this.into,
@@ -72,6 +79,31 @@ export class Response {
             event.preventDefault();
             this.move(this.omega + (steps * (band[1] - band[0])) / 300);
         });
+    }
+
+    // A limit that is not far above the curves is drawn.
+    height(largest) {
+        const top = Math.max(largest, this.branches?.top(this.quantity.name) ?? 0);
+        const { limit } = this.quantity;
+        return 1.06 * (Math.max(top, limit !== null && limit < NEAR * top ? limit : 0) || limit || 1);
+    }
+
+    // What the limit of the study on this quantity forbids.
+    forbidden(u) {
+        const { limit } = this.quantity;
+        if (limit === null || limit > u.scales.y.max) return;
+        const { ctx, bbox } = u;
+        const y = u.valToPos(limit, "y", true);
+        ctx.save();
+        ctx.fillStyle = css("--forbidden");
+        ctx.fillRect(bbox.left, bbox.top, bbox.width, y - bbox.top);
+        ctx.strokeStyle = css("--fails");
+        ctx.lineWidth = devicePixelRatio;
+        ctx.beginPath();
+        ctx.moveTo(bbox.left, y);
+        ctx.lineTo(bbox.left + bbox.width, y);
+        ctx.stroke();
+        ctx.restore();
     }
 
     size() {
@@ -107,6 +139,7 @@ export class Response {
 
     // A curve of a design; none to take it away.
     set(whose, answer) {
+        if (answer && answer.quantity !== this.quantity.name) return; // of the quantity before this one
         if (answer) this.curves[whose] = answer.columns;
         else delete this.curves[whose];
         this.show();
@@ -135,7 +168,16 @@ export class Response {
                 return [line, ` ${names[whose]} `];
             }),
         );
+        this.explain();
         this.into.setAttribute("aria-label", `${this.quantity.words} over the frequency of the force, from ${this.band[0]} to ${this.band[1]} rad/s`);
+    }
+
+    // What the curves are of, and the limit on it.
+    explain() {
+        const { words, part, limit, limit_part, unit } = this.quantity;
+        const beyond = limit !== null && limit > this.height(Math.max(0, ...this.table.slice(1).flat())) ? ", above this chart" : "";
+        const said = limit === null ? "" : ` The study's limit: ${shown(limit)} ${unit} ${limit_part}${beyond}.`;
+        this.part.textContent = `${words[0].toUpperCase()}${words.slice(1)}, ${part}.${said}`;
     }
 
     // The curves as a table.

@@ -1,7 +1,7 @@
 // Files to save and lines to copy. The server writes them down and keeps nothing; the browser saves.
 
 export function download(file, text) {
-    const kind = file.endsWith(".svg") ? "image/svg+xml" : file.endsWith(".csv") ? "text/csv" : "application/json";
+    const kind = file.endsWith(".svg") ? "image/svg+xml" : file.endsWith(".csv") ? "text/csv" : file.endsWith(".html") ? "text/html" : "application/json";
     const link = document.createElement("a");
     link.href = URL.createObjectURL(new Blob([text], { type: kind }));
     link.download = file;

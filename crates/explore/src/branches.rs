@@ -4,10 +4,10 @@ use crate::limits::{MOST_MOTIONS, of_periods};
 use crate::protocol::Answer;
 use crate::response::{Stale, band};
 use retune_dynamics::periodic::branches::{Plan, SPACINGS};
-use retune_dynamics::periodic::{Branch, Branches, Control, Event, EventKind, Largest, Orbit, branches};
-use retune_model::Parameter;
+use retune_dynamics::periodic::{Branch, Branches, Control, Event, EventKind, Largest, branches};
+use retune_model::{Measure, Parameter};
 use retune_study::{Study, rounded};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use std::sync::atomic::{AtomicU64, Ordering::SeqCst};
 
 /// Frequencies at which runs are started from rest: as many as `retune branches` has if not told otherwise, like the next.
@@ -59,33 +59,51 @@ pub fn follow(
     }
     Ok(match found {
         Err(error) => answer.with("problem", error.to_string()),
-        Ok(found) => drawn(answer, &found, |orbit| orbit.seen.largest(measure))
-            .with("largest", found.largest(measure).as_ref().map(largest)),
+        Ok(found) => {
+            drawn(answer, &found, measure).with("largest", found.largest(measure).as_ref().map(largest))
+        }
     })
 }
 
-/// The motions as curves, one after the other with a gap between them, and the events on them.
-fn drawn(answer: Answer, found: &Branches, value: impl Fn(&Orbit) -> f64) -> Answer {
-    let mut columns: [Vec<f64>; 3] = Default::default();
-    let mut push = |row: [f64; 3]| columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
+/// The motions as curves, one after the other with a gap between them, and the events on them: `value` is that of the study's quantity, and
+/// every quantity has its own column by its name.
+fn drawn(answer: Answer, found: &Branches, measure: Measure) -> Answer {
+    let mut columns: [Vec<f64>; 3 + Measure::ALL.len()] = Default::default();
+    let mut push = |row: [f64; 3 + Measure::ALL.len()]| {
+        columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
+    };
     for branch in &found.branches {
         for (place, orbit) in branch.points.iter().enumerate() {
-            push([orbit.value, value(orbit), f64::from(u8::from(branch.is_stable_after(place)))]);
+            let head = [
+                orbit.value,
+                orbit.seen.largest(measure),
+                f64::from(u8::from(branch.is_stable_after(place))),
+            ];
+            let all = Measure::ALL.map(|measure| orbit.seen.largest(measure));
+            push(std::array::from_fn(|i| head.get(i).copied().unwrap_or_else(|| all[i - head.len()])));
         }
-        push([f64::NAN; 3]);
+        push([f64::NAN; 3 + Measure::ALL.len()]);
     }
-    let events: Vec<Value> = found.branches.iter().flat_map(|branch| events(branch, &value)).collect();
+    let events: Vec<Value> = found.branches.iter().flat_map(|branch| events(branch, measure)).collect();
     let answer = answer.with("branches", found.branches.len()).with("ended", found.ended);
     ["omega", "value", "stable"]
         .into_iter()
+        .chain(Measure::ALL.map(Measure::name))
         .zip(&columns)
         .fold(answer.with("events", events), |answer, (name, column)| answer.column(name, column))
 }
 
-/// The kind of each event, its frequency and the value there.
-fn events(branch: &Branch, value: impl Fn(&Orbit) -> f64) -> Vec<Value> {
+/// The kind of each event, its frequency and the value there; then that of each quantity.
+fn events(branch: &Branch, measure: Measure) -> Vec<Value> {
     let of = |kind: EventKind| branch.events.iter().filter(move |event| event.kind == kind).take(MOST_EVENTS);
-    let words = |event: &Event| json!([event.kind.name(), event.orbit.value, value(&event.orbit)]);
+    let words = |event: &Event| {
+        let value = |measure: Measure| event.orbit.seen.largest(measure);
+        let all: Map<String, Value> = Measure::ALL
+            .map(|measure| (measure.name().to_owned(), json!(value(measure))))
+            .into_iter()
+            .collect();
+        json!([event.kind.name(), event.orbit.value, value(measure), all])
+    };
     EventKind::ALL.into_iter().flat_map(of).map(words).collect()
 }
 

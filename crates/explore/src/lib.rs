@@ -26,6 +26,7 @@
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
 pub mod branches;
+pub mod forcing;
 mod http;
 pub mod kind;
 pub mod limits;
@@ -33,6 +34,7 @@ pub mod motion;
 mod page;
 pub mod protocol;
 mod refused;
+mod report;
 pub mod response;
 pub mod server;
 pub mod session;

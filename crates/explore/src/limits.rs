@@ -7,6 +7,8 @@ use std::f64::consts::TAU;
 
 /// Bytes of a message, and of the head of a request.
 pub const MOST_BYTES: usize = 16 << 10;
+/// Bytes of a message with a record.
+pub const MOST_RECORD: usize = 4 << 20;
 /// Pages at once.
 pub const MOST_PAGES: usize = 16;
 /// Columns of pixels of a time series.

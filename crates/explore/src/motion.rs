@@ -1,6 +1,7 @@
 //! One run as the page shows it: the figures of `retune simulate`, time series for the screen, the last periods for the drawing and the
 //! phase portrait, and the state at each crest of the force.
 
+use crate::forcing::curve;
 use crate::limits::rows;
 use crate::protocol::Answer;
 use crate::refused::Refused;
@@ -39,6 +40,7 @@ pub fn look(study: &Study, span: [f64; 2], columns: usize) -> Result<Answer, Ref
     let (series, (simulation, drawn, crests)) =
         rayon::join(|| series(study, span, columns), || (simulate(study, None), drawn(study), crests(study)));
     let simulation = simulation.map_err(Refused::whole)?;
+    let Thin { t: moments, columns: [forcing] } = curve(&study.scene.forcing, span, columns);
     let (series, contacts) = series?;
     let mut answer = Answer::new("motion")
         .with("span", span)
@@ -51,6 +53,7 @@ pub fn look(study: &Study, span: [f64; 2], columns: usize) -> Result<Answer, Ref
     for (name, column) in ["x1", "gap", "E1", "FconL", "FconR"].into_iter().zip(&series.columns) {
         answer = answer.column(name, column);
     }
+    answer = answer.column("forcing.t", &moments).column("forcing", &forcing);
     for (name, column) in ["drawn.t", "drawn.x1", "drawn.v1", "drawn.x", "drawn.v"].into_iter().zip(&drawn?) {
         answer = answer.column(name, column);
     }
@@ -88,11 +91,15 @@ pub fn series(study: &Study, span: [f64; 2], columns: usize) -> Result<(Thin<5>,
     Ok((series.finish(), t.into_iter().zip(places).flat_map(|(t, place)| [t, place]).collect()))
 }
 
-/// The last periods: t, x1, v1, x2 - x1, v2 - v1.
+/// The last periods, of a transient the first: t, x1, v1, x2 - x1, v2 - v1.
 fn drawn(study: &Study) -> Result<[Vec<f64>; 5], Refused> {
     let (period, end) = (period(study), study.window.end.get());
     let mut columns: [Vec<f64>; 5] = Default::default();
-    visit(study, [(end - DRAWN * period).max(0.0), end], (period / FINE, false), &mut |row: &Sample| {
+    let span = match study.scene.forcing.is_transient() {
+        true => [0.0, end.min(DRAWN * period)],
+        false => [(end - DRAWN * period).max(0.0), end],
+    };
+    visit(study, span, (period / FINE, false), &mut |row: &Sample| {
         let [x1, v1, x2, v2] = row.state;
         columns
             .iter_mut()
@@ -132,6 +139,11 @@ pub fn figures(simulation: &Simulation) -> Value {
     let mut figures = largest(|measure| run.largest(measure));
     figures.insert(IMPACTS.to_owned(), json!(run.impacts()));
     figures.into()
+}
+
+/// One of the figures, as text; a dash where it is none.
+pub fn look_up(figures: &Value, measure: Measure) -> String {
+    figures.get(measure.name()).and_then(Value::as_str).unwrap_or("–").to_owned()
 }
 
 /// The name of the number of impacts.

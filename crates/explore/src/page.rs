@@ -32,6 +32,7 @@ pub const FILES: &[File] = &[
     file!("phase.js", "text/javascript; charset=utf-8"),
     file!("figures.js", "text/javascript; charset=utf-8"),
     file!("tuning.js", "text/javascript; charset=utf-8"),
+    file!("forcing.js", "text/javascript; charset=utf-8"),
     file!("own.js", "text/javascript; charset=utf-8"),
     file!("save.js", "text/javascript; charset=utf-8"),
     file!("uplot/uPlot.iife.min.js", "text/javascript; charset=utf-8"),

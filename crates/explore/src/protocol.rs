@@ -1,7 +1,8 @@
 #![doc = include_str!("../PROTOCOL.md")]
 
-use crate::limits::{MOST_BYTES, MOST_COLUMNS};
+use crate::limits::{MOST_BYTES, MOST_COLUMNS, MOST_RECORD};
 use crate::refused::Refused;
+use retune_model::Measure;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -45,6 +46,9 @@ pub enum Message {
         /// Whether to follow every motion over the band, too.
         #[serde(default)]
         branches: bool,
+        /// What curves are of; what the study makes small if left out.
+        #[serde(default)]
+        quantity: Option<Measure>,
     },
     /// Keep this design for comparison.
     Pin {
@@ -52,6 +56,9 @@ pub enum Message {
         slot: usize,
         /// The design.
         place: Place,
+        /// What its curve is of, as of a look.
+        #[serde(default)]
+        quantity: Option<Measure>,
     },
     /// Tune from here.
     Tune {
@@ -63,18 +70,34 @@ pub enum Message {
         /// Its fields: m1, f1, zeta, force, band, mass and so on.
         structure: BTreeMap<String, Value>,
     },
+    /// Move the structure by a pulse or a record, or again by what the study has.
+    Force {
+        /// The fields of `scene.forcing`; none for that of the study.
+        forcing: Option<serde_json::Map<String, Value>>,
+        /// The text of the file with the record.
+        #[serde(default)]
+        text: Option<String>,
+    },
     /// End the tuning and keep its best design.
     Stop {},
     /// Write this place down.
-    Write {
-        /// The place.
-        place: Place,
-        /// As what.
-        what: What,
-        /// The pinned designs A and B, for a figure that has them.
-        #[serde(default)]
-        pins: [Option<Place>; 2],
-    },
+    Write(Write),
+}
+
+/// What is to be written down.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Write {
+    /// The place.
+    pub place: Place,
+    /// As what.
+    pub what: What,
+    /// The pinned designs A and B, for what has them.
+    #[serde(default)]
+    pub pins: [Option<Place>; 2],
+    /// What curves are of, as of a look.
+    #[serde(default)]
+    pub quantity: Option<Measure>,
 }
 
 /// Forms in which a place is written down. The page offers them as files; the server writes none.
@@ -93,16 +116,24 @@ pub enum What {
     Picture,
     /// A figure of the response over frequency.
     Response,
+    /// The run as `retune simulate --json` prints it.
+    Json,
+    /// A page with the figures, the curves, the motion and the study.
+    Report,
 }
+
+/// How a message begins that may hold a record.
+const RECORD: &str = "{\"force\":";
 
 /// Reads a message.
 ///
 /// # Errors
 /// It is too long, no message, or has a field that is out of range.
 pub fn read(text: &str) -> Result<Message, Refused> {
-    if text.len() > MOST_BYTES {
+    let most = if text.starts_with(RECORD) { MOST_RECORD } else { MOST_BYTES };
+    if text.len() > most {
         let length = text.len();
-        return Err(Refused::whole(format!("a message of {length} bytes: at most {MOST_BYTES} are read")));
+        return Err(Refused::whole(format!("a message of {length} bytes: at most {most} are read")));
     }
     let message: Message = serde_json::from_str(text).map_err(Refused::whole)?;
     match &message {

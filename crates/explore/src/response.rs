@@ -4,8 +4,9 @@ use crate::limits::MOST_SAMPLES;
 use crate::protocol::Answer;
 use rayon::prelude::*;
 use retune_model::{Measure, NonNegative, Positive, Scene};
-use retune_optim::{Band, FrequencyBand, Goal, Objective, Response, worst_over};
-use retune_study::{Study, rounded};
+use retune_optim::{Band, FrequencyBand, Goal, Limit, Objective, Response, worst_over};
+use retune_study::{Study, rounded, short};
+use serde::Serialize;
 use serde_json::Value;
 
 /// Samples of the first curve, and of the final one.
@@ -33,6 +34,81 @@ fn term(study: &Study) -> Objective {
     Objective { omega: None, k1: None, restitution: None, ensemble: None, response, ..first }
 }
 
+/// What a curve is of: of what the study makes small, the part of the response that its objective looks at; of any other quantity, all that
+/// a limit on it covers.
+fn goal(study: &Study, quantity: Measure) -> Goal {
+    let (own, mut window) = (term(study), study.window.window());
+    if quantity == study.quantity() || own.response == Response::Steady {
+        return Goal { objective: Objective { quantity, ..own }, ..window.into() };
+    }
+    window.from = limited_from(study);
+    Goal { objective: Objective { quantity, response: Response::Window, ..own }, ..window.into() }
+}
+
+/// When limits begin to apply, s.
+fn limited_from(study: &Study) -> f64 {
+    study.goal().limits.from.map_or(0.0, NonNegative::get)
+}
+
+/// The part of the response from a time on, s, in words.
+fn since(from: f64) -> String {
+    if from > 0.0 { format!("from {} s on", short(from)) } else { "from rest on".to_owned() }
+}
+
+/// The part of the response that a curve is of, and the part that limits cover.
+pub fn parts(study: &Study, quantity: Measure) -> [String; 2] {
+    let response = term(study).response;
+    let limited = match response {
+        Response::Steady => "in the steady motion".to_owned(),
+        _ => since(limited_from(study)),
+    };
+    let own = match response {
+        Response::Steady => limited.clone(),
+        _ if quantity != study.quantity() => limited.clone(),
+        Response::Settled => "once settled".to_owned(),
+        _ => since(study.window.t0.get()),
+    };
+    [own, limited]
+}
+
+/// What a curve may be of, with the limit of the study on it and the part of the response that each covers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Drawn {
+    name: &'static str,
+    unit: &'static str,
+    words: &'static str,
+    /// Whether only a damper has it, and only one with walls.
+    of_damper: bool,
+    of_walls: bool,
+    /// The part of the response that the curve is of.
+    part: String,
+    /// The largest value allowed, and where.
+    limit: Option<f64>,
+    limit_part: String,
+}
+
+impl Drawn {
+    /// A quantity of a study.
+    pub fn of(study: &Study, quantity: Measure) -> Self {
+        let [part, limit_part] = parts(study, quantity);
+        Self {
+            name: quantity.name(),
+            unit: quantity.unit(),
+            words: quantity.words(),
+            of_damper: quantity.is_of_damper(),
+            of_walls: quantity.is_of_walls(),
+            part,
+            limit: allowed(study, quantity),
+            limit_part,
+        }
+    }
+}
+
+/// The largest value that a study allows.
+pub fn allowed(study: &Study, quantity: Measure) -> Option<f64> {
+    study.goal().limits.get(Limit::Of(quantity))
+}
+
 /// The band of frequencies of the study; about the natural frequency if it has none.
 pub fn band(study: &Study) -> Band {
     let objective = study.objective();
@@ -58,10 +134,22 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// Of a study.
-    pub fn of(study: &Study) -> Self {
-        let goal = Goal { objective: term(study), ..study.window.window().into() };
-        Self { goal, study: study.clone() }
+    /// Of a quantity of a study.
+    pub fn of(study: &Study, quantity: Measure) -> Self {
+        Self { goal: goal(study, quantity), study: study.clone() }
+    }
+
+    /// Of what a study makes small.
+    fn own(study: &Study) -> Self {
+        Self::of(study, study.quantity())
+    }
+
+    /// Whether the scene has the quantity.
+    pub fn is_there(&self) -> bool {
+        let quantity = self.goal.objective.quantity;
+        let damper = self.study.scene.damper;
+        !(quantity.is_of_damper() && damper.is_none()
+            || quantity.is_of_walls() && damper.is_none_or(|damper| damper.contact.is_none()))
     }
 
     /// The value at a frequency, rad/s; NaN where there is none.
@@ -89,6 +177,11 @@ impl Curve {
     /// # Errors
     /// The work has become stale.
     pub fn worst(&self, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<Option<[f64; 2]>, Stale> {
+        if self.study.scene.forcing.is_transient() {
+            // One run is all there is.
+            let value = self.at(0.0);
+            return if is_stale() { Err(Stale) } else { Ok((!value.is_nan()).then_some([value, 0.0])) };
+        }
         let value = |omega: f64| match self.at(omega) {
             _ if is_stale() => Err(Some(Stale)),
             value if value.is_nan() => Err(None),
@@ -112,7 +205,9 @@ impl Curve {
         is_stale: &(dyn Fn() -> bool + Sync),
     ) -> Result<Answer, Stale> {
         let [omega, values] = self.over(samples, is_stale)?;
-        Ok(Answer::new("response").with("whose", whose).column("omega", &omega).column("value", &values))
+        let quantity = self.goal.objective.quantity.name();
+        let answer = Answer::new("response").with("whose", whose).with("quantity", quantity);
+        Ok(answer.column("omega", &omega).column("value", &values))
     }
 }
 
@@ -121,7 +216,7 @@ impl Curve {
 /// # Errors
 /// The work has become stale.
 pub fn worst(study: &Study, whose: &str, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<Answer, Stale> {
-    let (found, bare) = (Curve::of(study).worst(is_stale)?, Curve::of(&bare(study)).worst(is_stale)?);
+    let (found, bare) = (Curve::own(study).worst(is_stale)?, Curve::own(&bare(study)).worst(is_stale)?);
     let Some([value, omega]) = found else {
         let problem = "no value at some frequency of the band";
         return Ok(Answer::new("worst").with("whose", whose).with("problem", problem));
@@ -142,7 +237,8 @@ pub fn worst(study: &Study, whose: &str, is_stale: &(dyn Fn() -> bool + Sync)) -
 fn largest(study: &Study, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<Option<Value>, Stale> {
     let Band { from, to, samples } = band(study);
     let [Ok(from), Ok(to)] = [from, to].map(Positive::new) else { return Ok(None) };
-    let omega = Some(FrequencyBand { from, to, samples, relative: false });
+    let omega =
+        (!study.scene.forcing.is_transient()).then_some(FrequencyBand { from, to, samples, relative: false });
     let goal = Goal { objective: Objective { omega, ..term(study) }, ..study.window.window().into() };
     let found = goal.needs(&study.scene, &study.solver.settings(), &|| !is_stale());
     if is_stale() {

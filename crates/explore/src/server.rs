@@ -1,7 +1,7 @@
 //! The server: it listens on the loopback address alone, and each connection has a thread of its own.
 
 use crate::http::{self, Verdict};
-use crate::limits::{MOST_BYTES, MOST_PAGES};
+use crate::limits::{MOST_PAGES, MOST_RECORD};
 use crate::protocol::Answer;
 use crate::session;
 use crate::start::Start;
@@ -30,6 +30,8 @@ pub struct Options {
     pub port: u16,
     /// Whether the page is opened in a browser.
     pub browser: bool,
+    /// Most threads of all pages together; all cores by default.
+    pub threads: Option<u16>,
 }
 
 /// Serves the page until the process ends.
@@ -38,6 +40,10 @@ pub struct Options {
 /// The study is wrong, or the port is taken.
 pub fn explore(options: &Options, watch: &dyn Observer) -> Result<(), Error> {
     let server = Server::open(options)?;
+    if let Some(threads) = options.threads {
+        // Of the process, whose pages share them; where it has some already, these stay.
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global();
+    }
     watch.result(&format!("{}\nends with Ctrl-C", server.address()))?;
     if options.browser
         && let Err(error) = open::that_detached(server.address())
@@ -204,8 +210,8 @@ fn socket(stream: TcpStream, begun: Vec<u8>, start: &Start) -> std::io::Result<(
     let config = WebSocketConfig::default()
         .read_buffer_size(4096)
         .write_buffer_size(0)
-        .max_message_size(Some(MOST_BYTES))
-        .max_frame_size(Some(MOST_BYTES));
+        .max_message_size(Some(MOST_RECORD))
+        .max_frame_size(Some(MOST_RECORD));
     let write = Arc::new(Mutex::new(stream.try_clone()?));
     let duplex = || Ok::<_, std::io::Error>(Duplex { read: stream.try_clone()?, write: Arc::clone(&write) });
     let mut reader = WebSocket::from_partially_read(duplex()?, begun, Role::Server, Some(config));

@@ -3,14 +3,14 @@
 use crate::kind::{kind, spread};
 use crate::limits::shown;
 use crate::motion::look;
-use crate::protocol::{Answer, Message, Place, What, read};
+use crate::protocol::{Answer, Message, Place, Write, read};
 use crate::refused::Refused;
 use crate::response::{CURVES, Curve, Stale, bare, worst};
 use crate::start::Start;
 use crate::{branches, texts, tuning};
-use retune_model::NonNegative;
+use retune_model::{Measure, NonNegative};
 use retune_study::Study;
-use serde_json::Value;
+use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering::SeqCst};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -26,14 +26,20 @@ struct Look {
     span: Option<[f64; 2]>,
     columns: usize,
     branches: bool,
+    quantity: Option<Measure>,
+}
+
+struct Pin {
+    place: Place,
+    quantity: Option<Measure>,
 }
 
 #[derive(Default)]
 struct Mail {
     look: Option<Look>,
-    pins: [Option<Place>; 2],
+    pins: [Option<Pin>; 2],
     tune: Option<Place>,
-    write: Option<(Place, What, [Option<Place>; 2])>,
+    write: Option<Write>,
     ended: bool,
 }
 
@@ -41,6 +47,8 @@ struct Mail {
 pub struct Session<'a> {
     /// What it starts from, until the page begins with another structure.
     start: Mutex<Arc<Start>>,
+    /// The same under its own forcing.
+    own: Mutex<Arc<Start>>,
     send: &'a (dyn Fn(Answer) -> bool + Sync),
     mail: Mutex<Mail>,
     bell: Condvar,
@@ -52,8 +60,8 @@ pub struct Session<'a> {
 /// What the page has been sent, and need not be sent again.
 #[derive(Default)]
 struct Known {
-    bare: Option<Study>,
-    response: Option<Study>,
+    bare: Option<(Study, Measure)>,
+    response: Option<(Study, Measure)>,
     kind: Option<(Study, bool)>,
     spread: Option<(Study, [f64; 2])>,
     branches: Option<Study>,
@@ -66,7 +74,8 @@ pub fn serve(
     mut next: impl FnMut() -> Option<String>,
 ) {
     let (mail, bell, shown, tuned) = Default::default();
-    let session = Session { start: Mutex::new(Arc::new(start.clone())), send, mail, bell, shown, tuned };
+    let [begun, own] = [(), ()].map(|()| Mutex::new(Arc::new(start.clone())));
+    let session = Session { start: begun, own, send, mail, bell, shown, tuned };
     session.send(start.hello());
     std::thread::scope(|scope| {
         scope.spawn(|| session.shows());
@@ -84,13 +93,17 @@ pub fn serve(
     });
 }
 
+fn locked<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
+    of.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 impl Session<'_> {
     fn mail(&self) -> MutexGuard<'_, Mail> {
-        self.mail.lock().unwrap_or_else(PoisonError::into_inner)
+        locked(&self.mail)
     }
 
     fn start(&self) -> Arc<Start> {
-        Arc::clone(&self.start.lock().unwrap_or_else(PoisonError::into_inner))
+        Arc::clone(&locked(&self.start))
     }
 
     /// Begins anew with another structure: what was asked of the one before is dropped.
@@ -98,16 +111,35 @@ impl Session<'_> {
         match Start::own(structure) {
             Err(refused) => self.send(Answer::from(refused).with("own", true)),
             Ok(start) => {
-                let hello = start.hello();
-                *self.start.lock().unwrap_or_else(PoisonError::into_inner) = Arc::new(start);
-                let mut mail = self.mail();
-                *mail = Mail { ended: mail.ended, ..Mail::default() };
-                drop(mail);
-                self.shown.fetch_add(1, SeqCst);
-                self.tuned.fetch_add(1, SeqCst);
-                self.send(hello);
+                *locked(&self.own) = Arc::new(start.clone());
+                self.go_on(start);
             }
         }
+    }
+
+    /// Goes on under a pulse or a record, or again under what the study has.
+    fn force(&self, forcing: Option<Map<String, Value>>, text: Option<&str>) {
+        let own = Arc::clone(&locked(&self.own));
+        let start = match forcing {
+            None => Ok((*own).clone()),
+            Some(forcing) => own.under(forcing, text),
+        };
+        match start {
+            Err(refused) => self.send(Answer::from(refused).with("force", true)),
+            Ok(start) => self.go_on(start),
+        }
+    }
+
+    /// What was asked of the study before is dropped.
+    fn go_on(&self, start: Start) {
+        let hello = start.hello();
+        *locked(&self.start) = Arc::new(start);
+        let mut mail = self.mail();
+        *mail = Mail { ended: mail.ended, ..Mail::default() };
+        drop(mail);
+        self.shown.fetch_add(1, SeqCst);
+        self.tuned.fetch_add(1, SeqCst);
+        self.send(hello);
     }
 
     fn send(&self, answer: Answer) {
@@ -126,14 +158,14 @@ impl Session<'_> {
     /// Puts a message in the place of an older one of its kind.
     fn take(&self, message: Message) {
         match message {
-            Message::Look { id, place, span, columns, branches } => {
+            Message::Look { id, place, span, columns, branches, quantity } => {
                 let mut mail = self.mail();
-                mail.look = Some(Look { id, place, span, columns, branches });
+                mail.look = Some(Look { id, place, span, columns, branches, quantity });
                 self.shown.fetch_add(1, SeqCst);
             }
-            Message::Pin { slot, place } => {
+            Message::Pin { slot, place, quantity } => {
                 let mut mail = self.mail();
-                mail.pins[slot.min(1)] = Some(place);
+                mail.pins[slot.min(1)] = Some(Pin { place, quantity });
                 self.shown.fetch_add(1, SeqCst);
             }
             Message::Tune { place } => {
@@ -142,12 +174,13 @@ impl Session<'_> {
                 self.tuned.fetch_add(1, SeqCst);
             }
             Message::Own { structure } => self.begin(&structure),
+            Message::Force { forcing, text } => self.force(forcing, text.as_deref()),
             Message::Stop {} => {
                 self.tuned.fetch_add(1, SeqCst);
             }
-            Message::Write { place, what, pins } => {
+            Message::Write(write) => {
                 let mut mail = self.mail();
-                mail.write = Some((place, what, pins));
+                mail.write = Some(write);
                 self.shown.fetch_add(1, SeqCst);
             }
         }
@@ -171,15 +204,15 @@ impl Session<'_> {
     fn shows(&self) {
         enum Work {
             Look(Look),
-            Pin(usize, Place),
-            Write(Place, What, [Option<Place>; 2]),
+            Pin(usize, Pin),
+            Write(Write),
         }
         // Messages are counted while the mail is held, and so is the count read that tells whether there was another since.
         let work = |mail: &mut Mail| {
             let pin = |mail: &mut Mail| {
-                (0..2).find_map(|slot| mail.pins[slot].take().map(|place| Work::Pin(slot, place)))
+                (0..2).find_map(|slot| mail.pins[slot].take().map(|pin| Work::Pin(slot, pin)))
             };
-            let write = mail.write.take().map(|(place, what, pins)| Work::Write(place, what, pins));
+            let write = mail.write.take().map(Work::Write);
             let work = write.or_else(|| mail.look.take().map(Work::Look)).or_else(|| pin(mail))?;
             Some((work, self.shown.load(SeqCst)))
         };
@@ -189,8 +222,8 @@ impl Session<'_> {
             let is_stale = || self.shown.load(SeqCst) != count;
             match work {
                 // Only with its page: a slider that moves on does not end what is to be saved.
-                Work::Write(place, what, pins) => {
-                    let written = texts::written(&self.start(), &place, what, &pins, &|| self.mail().ended);
+                Work::Write(write) => {
+                    let written = texts::written(&self.start(), &write, &|| self.mail().ended);
                     self.send(written.unwrap_or_else(Answer::from));
                 }
                 Work::Look(look) => {
@@ -198,9 +231,9 @@ impl Session<'_> {
                         self.mail().look.get_or_insert(look);
                     }
                 }
-                Work::Pin(slot, place) => {
-                    if self.pin(slot, &place, &is_stale).is_err() {
-                        self.mail().pins[slot].get_or_insert(place);
+                Work::Pin(slot, pin) => {
+                    if self.pin(slot, &pin, &is_stale).is_err() {
+                        self.mail().pins[slot].get_or_insert(pin);
                     }
                 }
             }
@@ -214,7 +247,7 @@ impl Session<'_> {
         known: &mut Known,
         is_stale: &(dyn Fn() -> bool + Sync),
     ) -> Result<(), Stale> {
-        let Look { id, place, span, columns, branches: follows } = asked;
+        let Look { id, place, span, columns, branches: follows, quantity } = asked;
         let send = |answer: Answer| match is_stale() {
             true => Err(Stale),
             false => {
@@ -232,20 +265,27 @@ impl Session<'_> {
         };
         send(motion)?;
         let design = at_no_frequency(&study);
+        let quantity = quantity.unwrap_or_else(|| study.quantity());
+        let drawn = (design.clone(), quantity);
         // What the page will be sent of this design replaces what it has of another, in part or as a whole.
-        known.response.take_if(|of| *of != design);
+        known.response.take_if(|of| *of != drawn);
         known.branches.take_if(|of| *of != design);
         if *follows && known.branches.is_none() {
             send(branches::progress(0))?;
         }
         self.rest(DRAWN, is_stale)?;
-        let curve = Curve::of(&study);
-        let without = at_no_frequency(&bare(&study));
-        if known.bare.as_ref() != Some(&without) {
-            send(Curve::of(&without).answer("none", CURVES[1], is_stale)?)?;
+        let curve = Curve::of(&study, quantity);
+        let without = (at_no_frequency(&bare(&study)), quantity);
+        // A motion without a frequency has no response over frequencies.
+        let over_band = !study.scene.forcing.is_transient();
+        if over_band && known.bare.as_ref() != Some(&without) {
+            let curve = Curve::of(&without.0, quantity);
+            if curve.is_there() {
+                send(curve.answer("none", CURVES[1], is_stale)?)?;
+            }
             known.bare = Some(without);
         }
-        if known.response.is_none() {
+        if over_band && known.response.is_none() {
             send(curve.answer("now", CURVES[0], is_stale)?)?;
         }
         self.rest(RESTED, is_stale)?;
@@ -260,8 +300,10 @@ impl Session<'_> {
         };
         if known.response.is_none() {
             send(worst(&study, "now", is_stale)?)?;
-            send(curve.answer("now", CURVES[1], is_stale)?.with("fine", true))?;
-            known.response = Some(design.clone());
+            if over_band {
+                send(curve.answer("now", CURVES[1], is_stale)?.with("fine", true))?;
+            }
+            known.response = Some(drawn);
         }
         if irregular && known.spread.as_ref() != Some(&(study.clone(), span)) {
             send(spread(&study, span, *columns, is_stale)?)?;
@@ -284,11 +326,11 @@ impl Session<'_> {
         if is_stale() { Err(Stale) } else { Ok(()) }
     }
 
-    fn pin(&self, slot: usize, place: &Place, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<(), Stale> {
+    fn pin(&self, slot: usize, pin: &Pin, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<(), Stale> {
         let whose = ["A", "B"][slot];
         let answer = Answer::new("pinned").with("whose", whose);
         let found =
-            self.start().at(place).and_then(|study| Ok((look(&study, shown(&study, None)?, 1)?, study)));
+            self.start().at(&pin.place).and_then(|study| Ok((look(&study, shown(&study, None)?, 1)?, study)));
         let study = match found {
             Ok((run, study)) => {
                 self.send(answer.with("figures", run.get("figures")).with("text", run.get("text")));
@@ -299,7 +341,10 @@ impl Session<'_> {
                 return Ok(());
             }
         };
-        self.send(Curve::of(&study).answer(whose, CURVES[1], is_stale)?.with("fine", true));
+        let curve = Curve::of(&study, pin.quantity.unwrap_or_else(|| study.quantity()));
+        if !study.scene.forcing.is_transient() {
+            self.send(curve.answer(whose, CURVES[1], is_stale)?.with("fine", true));
+        }
         self.send(kind(&study).0.with("whose", whose));
         self.send(worst(&study, whose, is_stale)?);
         Ok(())

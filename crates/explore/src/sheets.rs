@@ -1,16 +1,23 @@
 //! Figures to take away: those of the page, drawn as the figures of all results are.
 
+use crate::forcing::{curve, forced};
 use crate::refused::Refused;
-use crate::response::{CURVES, Curve, Stale, bare};
-use retune_jobs::amount;
+use crate::response::{CURVES, Curve, Stale, allowed, bare, parts};
+use crate::thin::Thin;
+use retune_jobs::amount::{self, measured};
 use retune_jobs::summary::MadeBy;
-use retune_report::colour::{BLACK, BLUE, GREEN, GREY, VERMILION};
-use retune_report::{Axis, Chart, Dash, Key, Layer, Scale, Sheet, Stroke, Width, svg};
+use retune_model::Measure;
+use retune_report::colour::{BLACK, BLUE, GREEN, GREY, PURPLE, VERMILION};
+use retune_report::{Axis, Chart, Dash, Key, Layer, Scale, Sheet, Stroke, Width};
 use retune_solver::Window;
 use retune_study::{Study, design_words, hertz_and_rpm};
 
 /// Columns that the curves of the motion are thinned to.
 const COLUMNS: usize = 900;
+/// Opacity of what a limit forbids.
+const FORBIDDEN: f64 = 0.25;
+/// A limit up to so many times the largest value is drawn.
+const NEAR: f64 = 3.0;
 const NOW: Stroke = Stroke::new(VERMILION, 1.2, Dash::Solid);
 const NONE: Stroke = Stroke::new(BLACK, 1.1, Dash::Short);
 const PINNED: [(&str, Stroke); 2] =
@@ -20,7 +27,7 @@ const PINNED: [(&str, Stroke); 2] =
 ///
 /// # Errors
 /// The run fails.
-pub fn motion(study: &Study) -> Result<String, Refused> {
+pub fn motion(study: &Study) -> Result<Sheet, Refused> {
     let Window { from, to } = study.window.window();
     let (series, _) = crate::motion::series(study, [from, to], COLUMNS)?;
     let points = |column: usize| -> Vec<(f64, f64)> {
@@ -46,18 +53,31 @@ pub fn motion(study: &Study) -> Result<String, Refused> {
     }
     charts.push(chart("E1, J", &[(2, BLUE)], 90.0));
     if study.scene.damper.is_some_and(|damper| damper.contact.is_some()) {
-        charts.push(chart("contact force, N", &[(3, VERMILION), (4, GREY)], 115.0));
+        charts.push(chart("contact force, N", &[(3, VERMILION), (4, PURPLE)], 90.0));
     }
-    Ok(svg(&Sheet {
+    if let Some(forcing) = forced(&study.scene.forcing) {
+        let label = ["name", "unit"].map(|field| forcing[field].as_str().unwrap_or_default().to_owned());
+        let Thin { t, columns: [values] } = curve(&study.scene.forcing, [from, to], COLUMNS);
+        let y = Axis::around(label.join(", "), Scale::Linear, values.iter().copied());
+        let line = Layer::line(t.into_iter().zip(values), Stroke::new(GREY, 0.8, Dash::Solid));
+        charts.push(Chart::of(Axis::linear("t, s", (from, to)), y, vec![line], 90.0));
+    }
+    if let Some(last) = charts.last_mut() {
+        last.height = 115.0; // with the numbers of the abscissa
+    }
+    Ok(Sheet {
         title: "Motion".to_owned(),
-        description: format!("Displacement, energy and contact forces over time. {}", words(study)),
+        description: format!(
+            "Displacement, energy, contact forces and what moves the structure over time. {}",
+            words(study)
+        ),
         width: Width::Page,
         charts,
         columns: 1,
         stacked: true,
         legend: Vec::new(),
         caption: vec![words(study), MadeBy::new(study).to_string()],
-    }))
+    })
 }
 
 /// The response over the band, beside that without a damper and those of the pinned designs A and B.
@@ -66,16 +86,18 @@ pub fn motion(study: &Study) -> Result<String, Refused> {
 /// The work has become stale.
 pub fn response(
     study: &Study,
-    pins: [Option<Study>; 2],
+    pins: &[Option<Study>; 2],
+    quantity: Measure,
     is_stale: &(dyn Fn() -> bool + Sync),
-) -> Result<String, Stale> {
-    let pins: Vec<((&str, Stroke), Study)> =
-        PINNED.into_iter().zip(pins).filter_map(|(name, pin)| Some((name, pin?))).collect();
+) -> Result<Sheet, Stale> {
+    let pins: Vec<((&str, Stroke), &Study)> =
+        PINNED.into_iter().zip(pins).filter_map(|(name, pin)| Some((name, pin.as_ref()?))).collect();
     let mut shown = vec![(NONE, "no damper".to_owned(), bare(study))];
-    shown.extend(pins.iter().map(|((name, stroke), pin)| (*stroke, (*name).to_owned(), pin.clone())));
+    shown.extend(pins.iter().map(|((name, stroke), pin)| (*stroke, (*name).to_owned(), (*pin).clone())));
     shown.push((NOW, "this damper".to_owned(), study.clone()));
+    shown.retain(|(.., study)| Curve::of(study, quantity).is_there());
     let curve = |study: &Study| -> Result<Vec<(f64, f64)>, Stale> {
-        let [omega, values] = Curve::of(study).over(CURVES[1], is_stale)?;
+        let [omega, values] = Curve::of(study, quantity).over(CURVES[1], is_stale)?;
         Ok(omega.into_iter().zip(values).collect())
     };
     let curves =
@@ -87,10 +109,19 @@ pub fn response(
     let cursor =
         Layer::Upright { x: study.scene.forcing.frequency.get(), stroke: Stroke::new(GREY, 0.8, Dash::Dots) };
     let band = crate::response::band(study);
-    let name = study.quantity().name();
+    let name = quantity.name();
+    let limit = allowed(study, quantity);
+    let forbidden = limit.map(forbidden);
     let designs = pins.iter().map(|((name, _), pin)| format!("{name}: {}", words(pin)));
-    let caption = [words(study)].into_iter().chain(designs).chain([MadeBy::new(study).to_string()]);
-    Ok(svg(&Sheet {
+    let lines_of = shown.iter().map(|(stroke, words, _)| (Key::Line(*stroke), words.clone()));
+    let of_limit = limit
+        .map(|limit| (Key::Area(GREY, FORBIDDEN), format!("above the limit, {}", measured(limit, quantity))));
+    let legend = lines_of.chain(of_limit).collect();
+    let caption = [covered(study, quantity), words(study)]
+        .into_iter()
+        .chain(designs)
+        .chain([MadeBy::new(study).to_string()]);
+    Ok(Sheet {
         title: format!("{name} over frequency"),
         description: format!("{name} over the band, with the damper and without. {}", words(study)),
         width: Width::Column,
@@ -98,18 +129,40 @@ pub fn response(
             title: String::new(),
             x: Axis::linear("ω, rad/s", (band.from, band.to))
                 .with_second("frequency, Hz", hertz_and_rpm(1.0)[0]),
-            y: Axis::linear(amount::label(study.quantity()), (0.0, if top > 0.0 { 1.06 * top } else { 1.0 })),
-            layers: lines.chain([cursor]).collect(),
+            y: Axis::linear(amount::label(quantity), (0.0, height(top, limit))),
+            layers: forbidden.into_iter().chain(lines).chain([cursor]).collect(),
             height: 180.0,
         }],
         columns: 1,
         stacked: false,
-        legend: shown.iter().map(|(stroke, words, _)| (Key::Line(*stroke), words.clone())).collect(),
+        legend,
         caption: caption.collect(),
-    }))
+    })
 }
 
-fn words(study: &Study) -> String {
+/// What a limit forbids.
+fn forbidden(limit: f64) -> Layer {
+    let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
+    Layer::Band { x: everywhere, y: (limit, f64::INFINITY), colour: GREY, opacity: FORBIDDEN }
+}
+
+/// How high the chart is: so that the largest value is seen, and a limit that is not far above it.
+fn height(top: f64, limit: Option<f64>) -> f64 {
+    let near = limit.filter(|limit| *limit < NEAR * top).unwrap_or(0.0);
+    if top > 0.0 { 1.06 * top.max(near) } else { 1.0 }
+}
+
+/// What the curves are of, and what the limit covers.
+fn covered(study: &Study, quantity: Measure) -> String {
+    let [own, limited] = parts(study, quantity);
+    let limit = allowed(study, quantity).map_or(String::new(), |_| format!("; the limit is on it {limited}"));
+    let words = quantity.words();
+    let words = words.strip_prefix("the ").unwrap_or(words);
+    format!("The {words}, {own}{limit}.")
+}
+
+/// The damper in words.
+pub fn words(study: &Study) -> String {
     match study.scene.damper {
         None => "No damper.".to_owned(),
         Some(damper) => format!("{}.", design_words(&retune_model::Design::of(&damper), 4)),

@@ -1,16 +1,18 @@
 //! The study that a session starts from, and what becomes of it when a page changes its damper and its numbers.
 
+use crate::forcing::forced;
 use crate::limits::bounded;
-use crate::motion::IMPACTS;
+use crate::motion::{IMPACTS, period};
 use crate::protocol::{Answer, DamperKind, Place};
 use crate::refused::Refused;
-use crate::response::{band, of_all_motions};
+use crate::response::{Drawn, band, of_all_motions};
 use retune_jobs::Error;
 use retune_jobs::design::Specification;
-use retune_model::{Contact, Damper, Measure, NonNegative, Parameter, Surfaces, Unit};
-use retune_study::{Rule, Setting, Study, StudyError};
+use retune_model::{Contact, Damper, Forcing, Measure, NonNegative, Parameter, Scene, Surfaces, Unit};
+use retune_optim::Objective;
+use retune_study::{Rule, Setting, Span, Study, StudyError, read_record};
 use serde::Serialize;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -21,11 +23,13 @@ const DEFAULT: &str = include_str!("study.json");
 #[derive(Clone, Debug)]
 pub struct Start {
     study: Study,
-    /// What was named on the command line.
+    /// What was named on the command line, as long as its study is followed.
     pub file: Option<String>,
     damper: Damper,
     /// Whether it is a structure that was given in words.
     is_own: bool,
+    /// Whether a study was named on the command line.
+    is_named: bool,
 }
 
 /// A number that a page can turn.
@@ -45,12 +49,19 @@ pub struct Control {
     pub range: [f64; 2],
     /// Whether the slider is logarithmic.
     pub log: bool,
+    /// The smallest and the largest value that the study's search may give it, where it has them.
+    pub bounds: [Option<f64>; 2],
+    /// Whether it is of walls and contacts, which few turn.
+    pub of_contact: bool,
     /// The dampers that have it.
     pub dampers: &'static [DamperKind],
 }
 
-/// The numbers that a page can turn, in its order.
-const TURNED: [Parameter; 12] = [
+/// The fields of a pulse and of a record.
+const GIVEN: [&str; 8] = ["pulse", "record", "of", "peak", "duration", "unit", "scale", "column"];
+
+/// The numbers that a page shows first, in its order; all others of the catalogue follow.
+const FIRST: [Parameter; 12] = [
     Parameter::Omega,
     Parameter::K2,
     Parameter::C2,
@@ -85,6 +96,7 @@ impl Start {
         let default = retune_study::read::from_text(DEFAULT, "ssvi.json")?;
         let study = path.map(retune_study::read).transpose()?;
         let file = path.map(|path| path.display().to_string());
+        let is_named = file.is_some();
         let none = || StudyError::Rule { file: "ssvi.json".to_owned(), rule: Rule::NoDamper };
         let other = default.scene.damper.ok_or_else(none)?;
         let study = study.unwrap_or(default);
@@ -97,7 +109,7 @@ impl Start {
             let contact = Surfaces::for_mass(own.mass).ok().map(Contact::Hertz);
             Damper { rest_distance, clearance, contact, ..own }
         };
-        Ok(Self { study, file, damper, is_own: false })
+        Ok(Self { study, file, damper, is_own: false, is_named })
     }
 
     /// From a structure in words, with Den Hartog's TMD on it; the gaps and the walls of its SSVI NES are scaled as `retune design` does.
@@ -125,7 +137,39 @@ impl Start {
             file: None,
             damper,
             is_own: true,
+            is_named: false,
         })
+    }
+
+    /// The same moved by a pulse or a record, from its start until the structure is at rest again.
+    ///
+    /// # Errors
+    /// It is none, or has a field that is not one of it.
+    pub fn under(&self, forcing: Map<String, Value>, text: Option<&str>) -> Result<Self, Refused> {
+        let stray = forcing.keys().find(|name| !GIVEN.contains(&name.as_str()));
+        if let Some(name) = stray {
+            return Err(Refused::of(name, format!("is not allowed here: give {}", GIVEN.join(", "))));
+        }
+        let mut forcing: Forcing = serde_json::from_value(Value::Object(forcing)).map_err(Refused::whole)?;
+        match text {
+            Some(text) => {
+                read_record(&mut forcing, text).map_err(|problem| Refused::of("record", problem))?;
+            }
+            None if forcing.record_mut().is_some() => {
+                return Err(Refused::of("record", "the text of its file is missing"));
+            }
+            None => {}
+        }
+        let scene = Scene { forcing, ..self.study.scene };
+        let window = Span::settled(&scene).map_err(Refused::whole)?;
+        let mut study = Study { scene, window, ..self.study.clone() };
+        if let Some(optimize) = &mut study.optimize {
+            let quantity = optimize.objective.quantity();
+            (optimize.objective, optimize.limits.from) =
+                (Objective { quantity, ..Objective::default() }, None);
+        }
+        study.check().map_err(Refused::whole)?;
+        Ok(Self { study: bounded(study)?, file: None, ..self.clone() })
     }
 
     /// The study as it was read.
@@ -144,10 +188,14 @@ impl Start {
             .with("damper", self.damper_kind())
             .with("controls", self.controls())
             .with("own", self.is_own)
-            .with("named", self.file.is_some())
+            .with("transient", study.scene.forcing.is_transient())
+            .with("forcing", forced(&study.scene.forcing))
+            .with("period", period(study))
+            .with("named", self.is_named)
             .with("band", [band.from, band.to])
             .with("window", [study.window.t0.get(), study.window.end.get()])
             .with("quantity", of)
+            .with("quantities", Measure::ALL.map(|quantity| Drawn::of(study, quantity)))
             .with("figures", figures())
             .with("tunes", study.optimize.is_some())
             .with("motions", of_all_motions(study))
@@ -225,10 +273,21 @@ impl Start {
                 value,
                 range,
                 log,
+                bounds: self.bounds(parameter),
+                of_contact: parameter.is_of_contact(),
                 dampers: dampers(parameter),
             })
         };
-        TURNED.into_iter().filter_map(control).collect()
+        let others = Parameter::ALL.into_iter().filter(|parameter| !FIRST.contains(parameter));
+        FIRST.into_iter().chain(others).filter_map(control).collect()
+    }
+
+    /// The ends that the search of the study has.
+    fn bounds(&self, parameter: Parameter) -> [Option<f64>; 2] {
+        let search = self.study.optimize.as_ref().filter(|optimize| optimize.vary.contains(&parameter));
+        search
+            .and_then(|optimize| optimize.bounds.get(parameter))
+            .map_or([None; 2], |(lower, upper)| [Some(lower), upper])
     }
 
     /// The range of a slider: of the search's bounds or the band, else about the value.
@@ -237,9 +296,11 @@ impl Start {
             let band = band(&self.study);
             return [band.from, band.to];
         }
-        let bounds = self.study.optimize.as_ref().and_then(|optimize| optimize.bounds.get(parameter));
-        match (bounds, parameter) {
-            (Some((lower, Some(upper))), _) => [lower, upper],
+        match (self.bounds(parameter), parameter) {
+            ([Some(lower), Some(upper)], _) => [lower, upper],
+            (_, Parameter::Nu1 | Parameter::Nu2 | Parameter::Nu3 | Parameter::Nu4) => [0.0, 0.49],
+            (_, Parameter::Restitution) => [0.1, 1.0],
+            (_, Parameter::M1) => [0.25 * value, 4.0 * value],
             (_, Parameter::K1) => [0.4 * value, 2.5 * value],
             (_, Parameter::M2) => [0.25 * value, 4.0 * value],
             (_, parameter) if parameter.is_gap() || Parameter::AMPLITUDES.contains(&parameter) => {

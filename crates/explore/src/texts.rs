@@ -1,11 +1,13 @@
 //! A place written down: as a study, a command line, lines of Python, a table, a figure. A page offers them; nothing is written here.
 
-use crate::protocol::{Answer, Place, What};
+use crate::protocol::{Answer, Place, What, Write};
 use crate::refused::Refused;
 use crate::response::Stale;
-use crate::sheets;
 use crate::start::Start;
-use retune_jobs::simulate::write_rows;
+use crate::{report, sheets};
+use retune_jobs::answer;
+use retune_jobs::simulate::{simulate, write_rows};
+use retune_report::svg;
 use retune_study::{Settable, Study};
 
 /// Time between two rows of a motion, s, as `retune simulate --trajectory` has it.
@@ -19,25 +21,37 @@ const MOST_ROWS: f64 = 200_000.0;
 /// A study file could not have these numbers, the run fails, or the work has become stale.
 pub fn written(
     start: &Start,
-    place: &Place,
-    what: What,
-    pins: &[Option<Place>; 2],
+    Write { place, what, pins, quantity }: &Write,
     is_stale: &(dyn Fn() -> bool + Sync),
 ) -> Result<Answer, Refused> {
     let name = start.study().name();
+    let gone = |Stale| Refused::whole("the page has gone");
+    let pinned = || -> Result<[Option<Study>; 2], Refused> {
+        let [a, b] = pins.each_ref().map(|pin| pin.as_ref().map(|place| start.at(place)).transpose());
+        Ok([a?, b?])
+    };
     let (file, text) = match what {
         What::Study => (saved(name), study(&start.file_at(place)?)?),
         What::Command => (String::new(), command(start, place)?),
         What::Python => (String::new(), python(start, place)?),
         What::Motion => (format!("{name}-motion.csv"), motion(&start.at(place)?)?),
-        What::Picture => (format!("{name}-motion.svg"), sheets::motion(&start.at(place)?)?),
+        What::Picture => (format!("{name}-motion.svg"), svg(&sheets::motion(&start.at(place)?)?)),
         What::Response => {
-            let [a, b] = pins.each_ref().map(|pin| pin.as_ref().map(|place| start.at(place)).transpose());
-            (
-                format!("{name}-response.svg"),
-                sheets::response(&start.at(place)?, [a?, b?], is_stale)
-                    .map_err(|Stale| Refused::whole("the page has gone"))?,
-            )
+            let study = start.at(place)?;
+            let quantity = quantity.unwrap_or_else(|| study.quantity());
+            let text = sheets::response(&study, &pinned()?, quantity, is_stale).map_err(gone)?;
+            (format!("{name}-response.svg"), svg(&text))
+        }
+        What::Json => {
+            // Once it ends within the steps of a page, it is the run of the file, which may have more.
+            simulate(&start.at(place)?, None).map_err(Refused::whole)?;
+            let run = simulate(&start.file_at(place)?, None).map_err(Refused::whole)?;
+            (format!("{name}-run.json"), answer::text(&run).map_err(Refused::whole)? + "\n")
+        }
+        What::Report => {
+            let file = study(&start.file_at(place)?)?;
+            let said = report::Said { command: command(start, place)?, file, quantity: *quantity };
+            (format!("{name}-explored.html"), report::html(&start.at(place)?, &pinned()?, &said, is_stale)?)
         }
     };
     Ok(Answer::new("written").with("what", what).with("file", file).with("text", text))

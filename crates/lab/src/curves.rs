@@ -27,6 +27,7 @@ impl Measure {
 
 /// A method on a scene: its cheapest treatment of contacts, from the tightest setting to the loosest, with the error that no
 /// tighter setting exceeds (so that an accidentally small error does not count).
+#[derive(Clone)]
 pub struct Curve<'a> {
     /// Name of the method, with its program unless it is Retune's.
     pub name: String,
@@ -51,6 +52,10 @@ impl Curve<'_> {
             .min_by(|a, b| a.0.total_cmp(&b.0))
     }
 }
+
+/// Names of the default method, and of the paper's.
+const HYBRID: &str = "hybrid";
+const PAPERS: &str = "ode23s";
 
 /// Smallest error that is distinguished from zero.
 const ROUNDING: f64 = 1e-15;
@@ -150,6 +155,32 @@ fn shown<'a>(all: Vec<Curve<'a>>) -> Vec<Curve<'a>> {
     kept
 }
 
+/// Lines of a panel, at most: more cannot be told apart.
+const MOST: usize = 6;
+
+/// The curves of a scene in two panels: Retune's methods, and the hybrid beside other programs; of each those that serve the scene best. The
+/// hybrid and the paper's method always stay.
+fn panels<'a>(all: Vec<Curve<'a>>) -> [Vec<Curve<'a>>; 2] {
+    let others: Vec<Curve<'a>> =
+        all.iter().filter(|curve| curve.name == HYBRID || curve.program() != "retune").cloned().collect();
+    let own = all.into_iter().filter(|curve| curve.program() == "retune").collect();
+    [own, others].map(|mut curves: Vec<Curve<'a>>| {
+        while curves.len() > MOST {
+            let key = |curve: &Curve<'_>| match curve.name.as_str() {
+                HYBRID | PAPERS => (0, 0.0),
+                _ => rank(curve),
+            };
+            let order = |a: &Curve<'_>, b: &Curve<'_>| {
+                let (a, b) = (key(a), key(b));
+                a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+            };
+            let worst = (0..curves.len()).max_by(|&a, &b| order(&curves[a], &curves[b]));
+            worst.map(|worst| curves.remove(worst));
+        }
+        curves
+    })
+}
+
 fn line(curve: &Curve<'_>, cost: Cost) -> Line {
     let way = if curve.contacts == "stepped" { ", stepped" } else { "" };
     let failed = if curve.failed > 0 { format!(" ({} failed)", curve.failed) } else { String::new() };
@@ -164,27 +195,30 @@ fn line(curve: &Curve<'_>, cost: Cost) -> Line {
     Line::new(&name, points, style(&curve.name))
 }
 
-/// One panel for each scene: error on the horizontal axis, cost on the vertical axis.
+/// Two panels for each scene: error on the horizontal axis, cost on the vertical axis.
 pub fn work_precision(path: &Path, cases: &[Case], rows: &[Row], measure: Measure, cost: Cost) -> Any<()> {
     let (what, unit, range) = match cost {
         Cost::Time => ("time of a run", ", ms", (1e-2, 1e5)),
         Cost::Evaluations => ("evaluations of the right-hand side", "", (1e1, 1e7)),
     };
     let error = measure.name();
-    let panels = cases.iter().map(|case| {
-        let lines = shown(curves(rows, case, measure)).iter().map(|c| line(c, cost)).collect();
-        panel(
-            &format!("{} (T = {} s)", case.label, case.to),
-            Axis::log(format!("relative error of {error}"), (1e-15, 1e1)),
-            Axis::log(format!("{what}{unit}"), range),
-            lines,
-            180.0,
-        )
+    let panels = cases.iter().flat_map(|case| {
+        let both = panels(shown(curves(rows, case, measure)));
+        ["Retune", "others"].into_iter().zip(both).map(|(whose, curves)| {
+            panel(
+                &format!("{} (T = {} s): {whose}", case.label, case.to),
+                Axis::log(format!("relative error of {error}"), (1e-15, 1e1)),
+                Axis::log(format!("{what}{unit}"), range),
+                curves.iter().map(|curve| line(curve, cost)).collect(),
+                165.0,
+            )
+        })
     });
     let title = format!("Error of {error} against {what}: lower left is better");
     let key = "Vermilion: Retune's hybrid. Black: the paper's ode23s. Blue, green: Retune's other methods, adaptive and of fixed step. \
-               Purple: Rust crates. Orange: GNU Octave. Grey: SciPy, SUNDIALS.";
-    let note = "Of every other program the method that served the scene best; contacts located unless it says stepped. \
+               Purple: Rust crates. Orange: GNU Octave, where it is among the best. Grey: SciPy, SUNDIALS.";
+    let note = "Left Retune's methods, right the hybrid beside of every other program the method that served the scene best; of more than six the \
+                best six, with hybrid and ode23s. Contacts are located unless it says stepped. \
                 Points beyond the axes lie on their ends. All runs, failures with their reason: runs.csv.";
     sheet(path, &title, &[key, note], 2, panels.collect())
 }
@@ -207,6 +241,25 @@ mod tests {
             errors: [error, f64::NAN, f64::NAN],
             expected_impacts: 0,
         }
+    }
+
+    #[test]
+    fn contract_a_panel_has_the_best_six_with_the_hybrid_and_the_papers_method() {
+        let names = ["ode23s", "hybrid", "ode45", "ode23", "dop853", "rk4", "euler"];
+        let rows: Vec<Row> = names
+            .iter()
+            .enumerate()
+            .map(|(i, name)| Row { method: (*name).into(), ..row(1e-9, 10.0 - i as f64, 1e-9) })
+            .collect();
+        let all: Vec<Curve<'_>> = rows.iter().filter_map(|row| curve(&[row], Measure::E1max)).collect();
+        let [own, others] = panels(all);
+        let of = |curves: &[Curve<'_>]| curves.iter().map(|curve| curve.name.clone()).collect::<Vec<_>>();
+        assert_eq!(
+            of(&own),
+            ["ode23s", "hybrid", "ode23", "dop853", "rk4", "euler"],
+            "ode45 is the slowest of the others"
+        );
+        assert_eq!(of(&others), ["hybrid"]);
     }
 
     #[test]

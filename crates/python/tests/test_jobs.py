@@ -10,6 +10,7 @@ import sys
 import time
 from contextlib import chdir
 from pathlib import Path
+from typing import Any
 
 import pytest
 from conftest import STUDIES
@@ -187,11 +188,35 @@ def test_contract_dampers_are_compared(tmp_path: Path) -> None:
     assert found["m2"] == 60 and "verdict" in repr(compared) and compared._repr_html_().count("<tr>") == 4
     assert compared.to_pandas()["E1max"].tolist() == [result.fun for result in compared.results]
     assert compared.report().count("<tr>") == 4 and "srcdoc=" in compared.report()
-    with pytest.raises(rt.StudyError, match="k2: missing") as caught:
-        rt.compare(rt.Problem.from_study({**problem.study, "scene": {**problem.study["scene"], "forcing": {"base": 0.01, "omega": 6}}}), [rt.TMD(60)])
+    pulse = {"pulse": "half sine", "of": "force", "peak": 1e4, "duration": 0.1}
+    study = problem.study
+    shock = {**study, "scene": {**study["scene"], "forcing": pulse}, "optimize": {**study["optimize"], "objective": {}}}
+    with pytest.raises(rt.StudyError, match="k2: missing, and only for a forcing with a frequency") as caught:
+        rt.compare(rt.Problem.from_study(shock), [rt.TMD(60)])
     assert caught.value.field == "damper.k2"
     with pytest.raises(rt.StudyError, match="give one damper"):
         rt.compare(problem, [])
+
+
+@pytest.mark.parametrize("moved", [{"imbalance": "0.5 kg·m"}, {"base": "2 mm"}, {"base_acceleration": "0.02 g"}])
+def test_contract_dampers_are_compared_by_any_quantity_whatever_moves_the_structure(moved: dict[str, Any], tmp_path: Path) -> None:
+    problem = rt.Problem(
+        rt.Structure(m1=1000, c1=452, k1=3.95e4),
+        rt.TMD(60, k2=1900, c2=150),
+        **moved,
+        band=(5, 8),
+        samples=7,
+        vary=["k2", "c2"],
+        bounds={"k2": (10, 4000), "c2": (0, 1000)},
+        response="steady",
+        quantity="x1max",
+    )
+    dampers = [rt.TMD(20), rt.TMD(60, k2=1900, c2=150), rt.TMD(60)]
+    compared = rt.compare(problem, dampers, tmp_path / "compared")
+    by_mass = {result["m2"]: result.fun for result in compared.results}
+    assert len(compared.results) == 3 and by_mass[60] < by_mass[20]
+    assert compared.results[0].fun == pytest.approx(compared.results[1].fun, rel=1e-3), "found and given come to the same optimum"
+    assert "x1max, m" in repr(compared) and compared.to_pandas()["x1max"].tolist() == [result.fun for result in compared.results]
 
 
 def test_contract_branches_have_the_answer_of_the_command_line(program: Path, tmp_path: Path) -> None:

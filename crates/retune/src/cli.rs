@@ -90,6 +90,9 @@ pub enum Command {
         /// Print the address, and open no browser
         #[arg(long)]
         no_browser: bool,
+        /// Most threads; the results are the same for any number [default: all cores]
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+        threads: Option<u16>,
     },
     /// Sweep a parameter: one run of the scene, or the whole objective, at each of its values; into results/sweep-<study>-<parameter>
     #[command(allow_negative_numbers = true)]

@@ -44,9 +44,10 @@ pub fn run(command: Command) -> Result<(), Error> {
             certify::certify_file(&request, &screen)?.check_limits()
         }
         Command::Simulate(arguments) => simulate(&arguments),
-        Command::Explore { study, port, no_browser } => {
+        Command::Explore { study, port, no_browser, threads } => {
             let screen = Screen::new(false, false);
-            retune_explore::explore(&retune_explore::Options { study, port, browser: !no_browser }, &screen)
+            let options = retune_explore::Options { study, port, browser: !no_browser, threads };
+            retune_explore::explore(&options, &screen)
         }
         Command::Sweep(arguments) => sweep(arguments),
         Command::Branches(arguments) => branches(arguments),

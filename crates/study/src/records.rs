@@ -4,7 +4,7 @@ use super::format::Study;
 use super::rule::Rule;
 use retune_model::{Column, Forcing, Of, Record, RecordFile, Samples, Scene, Unit, unit};
 use std::fs::File;
-use std::io::{BufRead, BufReader, Seek};
+use std::io::{BufRead, BufReader, Cursor, Read, Seek};
 use std::path::Path;
 
 /// Reads the record of a scene, if it names a file with one; a path that is not absolute begins at `base`.
@@ -51,20 +51,35 @@ fn whole(of: Of, record: &Record, base: &Path) -> Result<Record, String> {
     let source = record.source();
     let path = base.join(&source.file);
     let file = File::open(&path).map_err(|error| format!("cannot be read: {error}"))?;
-    let is_at2 = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("at2"));
-    let samples = if is_at2 { at2(of, source, Lines::of(&file))? } else { csv(of, source, file)? };
-    Ok(record.with(samples))
+    Ok(record.with(samples(of, source, file)?))
+}
+
+/// The samples of a file, by the ending of its name.
+fn samples(of: Of, source: &RecordFile, file: impl Read + Seek) -> Result<Samples, String> {
+    let extension = Path::new(&source.file).extension();
+    let is_at2 = extension.is_some_and(|extension| extension.eq_ignore_ascii_case("at2"));
+    if is_at2 { at2(of, source, Lines::of(file)) } else { csv(of, source, file) }
+}
+
+/// Reads the record of a forcing, if it names a file with one, from the text of that file. A study is then written with its samples.
+///
+/// # Errors
+/// The text holds no record: the line, and what is wrong with it.
+pub fn read_text(forcing: &mut Forcing, text: &str) -> Result<(), String> {
+    let Some((of, record)) = forcing.record_mut() else { return Ok(()) };
+    *record = record.with(samples(of, record.source(), Cursor::new(text))?).whole();
+    Ok(())
 }
 
 /// The lines of a file, one at a time.
-struct Lines<'a> {
-    file: BufReader<&'a File>,
+struct Lines<R> {
+    file: BufReader<R>,
     line: String,
     number: usize,
 }
 
-impl<'a> Lines<'a> {
-    fn of(file: &'a File) -> Self {
+impl<R: Read> Lines<R> {
+    fn of(file: R) -> Self {
         Self { file: BufReader::new(file), line: String::new(), number: 0 }
     }
 
@@ -90,7 +105,7 @@ fn factor(source: &RecordFile, own: Unit) -> f64 {
 }
 
 /// CSV: a header, the time in the first column.
-fn csv(of: Of, source: &RecordFile, mut file: File) -> Result<Samples, String> {
+fn csv(of: Of, source: &RecordFile, mut file: impl Read + Seek) -> Result<Samples, String> {
     let factor = factor(source, of.units()[0]);
     let mark = separator(&mut file)?;
     let mut table =
@@ -115,8 +130,8 @@ fn csv(of: Of, source: &RecordFile, mut file: File) -> Result<Samples, String> {
 }
 
 /// What separates the columns of a file, by its first line; the file is then at its beginning again.
-fn separator(file: &mut File) -> Result<u8, String> {
-    let mut lines = Lines::of(&*file);
+fn separator(file: &mut (impl Read + Seek)) -> Result<u8, String> {
+    let mut lines = Lines::of(&mut *file);
     let head = lines.next()?.ok_or("is empty")?;
     let mark = [',', ';', '\t'].into_iter().find(|mark| head.contains(*mark)).unwrap_or(',');
     file.rewind().map_err(|error| format!("cannot be read: {error}"))?;
@@ -143,7 +158,7 @@ fn column(wanted: Option<&Column>, names: &csv::StringRecord) -> Result<usize, S
 }
 
 /// PEER's AT2: accelerations in g after a head of four lines, the last of which tells their number and their distance.
-fn at2(of: Of, source: &RecordFile, mut lines: Lines) -> Result<Samples, String> {
+fn at2(of: Of, source: &RecordFile, mut lines: Lines<impl Read>) -> Result<Samples, String> {
     if of != Of::BaseAcceleration {
         return Err("an AT2 file holds accelerations: give \"of\": \"base acceleration\"".to_owned());
     }
@@ -221,7 +236,7 @@ mod tests {
     #[test]
     fn exact_records_are_read_in_si_units() {
         let none = serde_json::json!({});
-        let found = samples("a.csv", "t,a,b\n0,1,4\n0.5,-2,5\n2,3,6\n", none.clone()).expect("a record");
+        let found = samples("si.csv", "t,a,b\n0,1,4\n0.5,-2,5\n2,3,6\n", none.clone()).expect("a record");
         assert_eq!((found.values(), found.time(1), found.end()), (&[1.0, -2.0, 3.0][..], 0.5, 2.0));
         let more = serde_json::json!({ "column": "b", "unit": "g", "scale": -2.0 });
         let found = samples("b.csv", "\u{feff}t;a;\"b\"\n\n0;1;4\n0.1;2;5\n", more).expect("a record");

@@ -96,8 +96,15 @@ fn contract_a_stale_search_ends_at_its_next_run() {
 fn contract_another_place_ends_the_search() {
     let look = |id: u64, k2: f64, branches: bool| {
         let place = Place { damper: DamperKind::Ssvi, set: [("k2".to_owned(), k2)].into() };
-        serde_json::to_string(&Message::Look { id, place, span: None, columns: 400, branches })
-            .expect("a message")
+        serde_json::to_string(&Message::Look {
+            id,
+            place,
+            span: None,
+            columns: 400,
+            branches,
+            quantity: None,
+        })
+        .expect("a message")
     };
     let (sender, receiver) = channel();
     let (sender, found) = (Mutex::new(sender), Mutex::new(Vec::new()));

@@ -76,6 +76,7 @@ fn regress_a_span_of_no_length_is_refused() {
             span: Some(span),
             columns: 400,
             branches: false,
+            quantity: None,
         };
         serde_json::to_string(&message).expect("a message")
     };
@@ -114,7 +115,7 @@ proptest! {
         damper in prop::sample::select(vec![DamperKind::None, DamperKind::Tmd, DamperKind::Ssvi]),
     ) {
         let set: Vec<(&str, f64)> = sets.iter().map(|(name, value)| (NAMES[*name], *value)).collect();
-        let message = Message::Look { id: 1, place: place(damper, &set), span, columns, branches: false };
+        let message = Message::Look { id: 1, place: place(damper, &set), span, columns, branches: false, quantity: None };
         let text = serde_json::to_string(&message).expect("a message");
         let Ok(Message::Look { place, span, columns, .. }) = read(&text) else { return Ok(()) };
         let Ok(mut study) = start().at(&place) else { return Ok(()) };
@@ -124,7 +125,7 @@ proptest! {
         prop_assert!(0.0 <= span[0] && span[0] < span[1] && span[1] <= study.window.end.get(), "{span:?}");
         if let Ok(shown) = motion::look(&study, span, columns) {
             // Six rows at most of each of five quantities in a column, and one column beyond the last.
-            for (name, most) in [("t", 12 * (columns + 1)), ("contacts", 8 * (columns + 1)), ("drawn.t", 1200), ("crest.x1", 4001)] {
+            for (name, most) in [("t", 12 * (columns + 1)), ("forcing", 4 * (columns + 1) + 2), ("contacts", 8 * (columns + 1)), ("drawn.t", 1200), ("crest.x1", 4001)] {
                 let rows = shown.numbers(name).map_or(0, |numbers| numbers.len());
                 prop_assert!(rows <= most, "{name}: {rows} of {most}");
             }

@@ -1,11 +1,12 @@
 //! The protocol of a page: what is refused, what is bounded, and that the latest message wins.
 
-use retune_explore::limits::{MOST_BYTES, MOST_COLUMNS};
-use retune_explore::protocol::{Answer, DamperKind, Message, Place, What, read};
+use retune_explore::limits::{MOST_BYTES, MOST_COLUMNS, MOST_RECORD};
+use retune_explore::protocol::{Answer, DamperKind, Message, Place, What, Write, read};
 use retune_explore::session::serve;
 use retune_explore::start::Start;
-use retune_explore::{response, texts};
+use retune_explore::{Refused, response, texts};
 use retune_jobs::simulate::simulate;
+use retune_model::{Measure, Parameter};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -22,8 +23,14 @@ pub fn place(damper: DamperKind, set: &[(&str, f64)]) -> Place {
 }
 
 fn look(id: u64, set: &[(&str, f64)]) -> String {
-    let message =
-        Message::Look { id, place: place(DamperKind::Ssvi, set), span: None, columns: 400, branches: false };
+    let message = Message::Look {
+        id,
+        place: place(DamperKind::Ssvi, set),
+        span: None,
+        columns: 400,
+        branches: false,
+        quantity: None,
+    };
     serde_json::to_string(&message).expect("a message")
 }
 
@@ -55,6 +62,25 @@ pub fn answers(messages: Vec<String>, last: impl Fn(&Answer) -> bool + Sync) -> 
 
 pub fn kind(answer: &Answer) -> &str {
     answer.get("kind").and_then(Value::as_str).expect("a kind")
+}
+
+/// A place written down.
+fn written(
+    start: &Start,
+    place: &Place,
+    what: What,
+    pins: [Option<Place>; 2],
+    quantity: Option<Measure>,
+) -> Result<Answer, Refused> {
+    texts::written(start, &Write { place: place.clone(), what, pins, quantity }, &|| false)
+}
+
+fn words(written: &Answer) -> String {
+    written.get("text").and_then(Value::as_str).expect("text").to_owned()
+}
+
+fn text(start: &Start, place: &Place, what: What) -> String {
+    words(&written(start, place, what, [None, None], None).expect("written"))
 }
 
 #[test]
@@ -173,7 +199,7 @@ fn contract_the_latest_position_wins() {
 
 #[test]
 fn contract_stale_work_ends_at_its_next_run() {
-    let curve = response::Curve::of(start().study());
+    let curve = response::Curve::of(start().study(), start().study().quantity());
     let looks = std::sync::atomic::AtomicUsize::new(0);
     let stale = || looks.fetch_add(1, std::sync::atomic::Ordering::SeqCst) >= 10;
     assert_eq!(curve.over(100_000, &stale), Err(response::Stale));
@@ -235,19 +261,13 @@ fn contract_a_saved_study_is_read_again() {
         (DamperKind::None, &[("P", 500.0)][..]),
     ] {
         let place = place(damper, set);
-        let written =
-            texts::written(&start(), &place, What::Study, &[None, None], &|| false).expect("written");
-        let text = written.get("text").and_then(Value::as_str).expect("text");
+        let text = text(&start(), &place, What::Study);
+        let text = text.as_str();
         let study = retune_study::read::from_text(text, "saved.json").expect("a study");
         assert_eq!(study.scene, start().at(&place).expect("a place").scene, "{damper:?}");
     }
-    let outside = texts::written(
-        &start(),
-        &place(DamperKind::Ssvi, &[("k2", -5.0)]),
-        What::Study,
-        &[None, None],
-        &|| false,
-    );
+    let outside =
+        written(&start(), &place(DamperKind::Ssvi, &[("k2", -5.0)]), What::Study, [None, None], None);
     assert_eq!(outside.expect_err("refused").field.as_deref(), Some("k2"));
 }
 
@@ -256,10 +276,6 @@ fn contract_the_command_line_says_what_differs() {
     let named =
         Start::read(Some(std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/src/study.json"))));
     let named = named.expect("a study");
-    let text = |start: &Start, place: &Place, what| {
-        let written = texts::written(start, place, what, &[None, None], &|| false).expect("written");
-        written.get("text").and_then(Value::as_str).expect("text").to_owned()
-    };
     let here = place(DamperKind::Ssvi, &[("k2", 300.0), ("c2", 232.0)]);
     assert!(text(&named, &here, What::Command).ends_with("src/study.json --set k2=300"));
     assert!(text(&named, &here, What::Python).contains(".at(k2=300)\nrun = problem.simulate()"));
@@ -271,16 +287,196 @@ fn contract_the_command_line_says_what_differs() {
     }
 }
 
+/// A curve of what has a limit is of all that the limit covers, the run from rest on; that of what the study makes small is of its window.
+#[test]
+fn exact_curves_of_any_quantity_are_of_what_limits_cover() {
+    let text =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/src/study.json")).expect("a study");
+    let limited = text.replace("\"vary\"", "\"limits\": { \"stroke\": 0.6, \"x1max\": 0.1 }, \"vary\"");
+    let study = retune_study::read::from_text(&limited, "limited.json").expect("a study");
+    let at = |omega: f64, t0: f64| {
+        let set = [format!("omega={omega}"), format!("t0={t0}")].map(|set| set.parse().expect("a setting"));
+        simulate(&study.with(&set).expect("a study"), None).expect("a run")
+    };
+    for (quantity, t0) in [(Measure::Energy, 50.0), (Measure::Stroke, 0.0), (Measure::ContactForce, 0.0)] {
+        let run = at(5.9, t0).summary.largest(quantity);
+        assert_eq!(response::Curve::of(&study, quantity).at(5.9), run, "{quantity:?}");
+    }
+    let [window, whole] = [50.0, 0.0].map(|t0| at(5.9, t0).summary.largest(Measure::Stroke));
+    assert!(window < whole, "{window} {whole}: the case tells the two apart");
+    let drawn = json!(Measure::ALL.map(|quantity| response::Drawn::of(&study, quantity)));
+    let of =
+        |name: &str| drawn.as_array().and_then(|all| all.iter().find(|one| one["name"] == name)).cloned();
+    let stroke = of("stroke").expect("a quantity");
+    assert_eq!(
+        (&stroke["limit"], &stroke["part"], &stroke["limit_part"]),
+        (&json!(0.6), &json!("from rest on"), &json!("from rest on"))
+    );
+    assert_eq!(
+        of("E1max").map(|energy| (energy["limit"].clone(), energy["part"].clone())),
+        Some((Value::Null, json!("from 50 s on")))
+    );
+    let bare = response::bare(&study);
+    assert!(
+        !response::Curve::of(&bare, Measure::Stroke).is_there()
+            && response::Curve::of(&bare, Measure::Energy).is_there()
+    );
+}
+
+/// A look at a quantity is answered with its curves alone, and the same look again with none.
+#[test]
+fn contract_curves_are_of_the_quantity_that_is_asked_for() {
+    let look = |id: u64| {
+        let place = place(DamperKind::Ssvi, &[]);
+        let quantity = Some(Measure::Stroke);
+        let message = Message::Look { id, place, span: None, columns: 400, branches: false, quantity };
+        serde_json::to_string(&message).expect("a message")
+    };
+    let found = answers(vec![look(1)], |answer| kind(answer) == "done");
+    let curves: Vec<_> = found.iter().filter(|answer| kind(answer) == "response").collect();
+    assert!(curves.iter().all(|curve| curve.get("quantity") == Some(&json!("stroke"))));
+    assert_eq!(curves.len(), 2, "none without a damper");
+    let largest = curves[1].numbers("value").expect("a curve").into_iter().fold(0.0, f64::max);
+    let worst = found.iter().find(|answer| kind(answer) == "worst").and_then(|worst| worst.get("figures"));
+    let words = worst.and_then(|figures| figures["stroke"].as_str()?.parse::<f64>().ok()).expect("a number");
+    assert!((largest / words - 1.0).abs() < 5e-3, "{largest} {words}");
+}
+
+/// What is saved of a run is what `retune simulate --json` prints; the report has what the page shows.
+#[test]
+fn contract_the_run_and_a_report_are_saved() {
+    let here = place(DamperKind::Ssvi, &[("k2", 300.0)]);
+    let run = simulate(&start().file_at(&here).expect("a study"), None).expect("a run");
+    let printed = retune_jobs::answer::text(&run).expect("JSON");
+    assert_eq!(text(&start(), &here, What::Json), format!("{printed}\n"));
+    let pins = [Some(place(DamperKind::Tmd, &[("k2", 500.0)])), None];
+    let page = words(&written(&start(), &here, What::Report, pins, Some(Measure::Stroke)).expect("written"));
+    let escaped = run.to_string().replace('<', "&lt;");
+    for part in [
+        escaped.as_str(),
+        "stroke over frequency",
+        "&quot;k2&quot;: 300.0",
+        "A, worst",
+        "<svg",
+        "retune explore",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    assert!(!page.contains("B, worst") && !page.contains("<script"));
+}
+
+/// A pulse and a record take the place of the study's forcing, whatever the damper: what is shown is the run of a study that says so.
+#[test]
+fn contract_a_pulse_or_a_record_moves_the_structure() {
+    let pulse = json!({ "pulse": "half sine", "of": "force", "peak": 10, "unit": "kN", "duration": 0.1 });
+    let record = json!({ "record": "a.csv", "of": "base acceleration", "unit": "g" });
+    let force = |forcing: &Value, text: Option<&str>| {
+        json!({ "force": { "forcing": forcing, "text": text } }).to_string()
+    };
+    let look = look(1, &[("k2", 300.0)]);
+    for (forcing, text) in [(&pulse, None), (&record, Some("t,a\n0,0\n0.5,0.2\n1.5,-0.1\n2,0\n"))] {
+        let found = answers(vec![force(forcing, text), look.clone()], |answer| kind(answer) == "done");
+        let hello = found.iter().rfind(|answer| kind(answer) == "hello").expect("another study");
+        assert_eq!([hello.get("transient"), hello.get("own")], [Some(&json!(true)), Some(&json!(false))]);
+        assert!(
+            found.iter().all(|answer| kind(answer) != "response"),
+            "a transient has no response over frequencies"
+        );
+        let motion = found.iter().find(|answer| kind(answer) == "motion").expect("a motion");
+        let Value::Object(fields) = forcing.clone() else { panic!("an object") };
+        let start = start().under(fields, text).expect("a forcing");
+        let saved = text_of(&start, &[("k2", 300.0)]);
+        let study =
+            retune_study::read::from_text(&saved, "ssvi.json").expect("a study that needs no other file");
+        let run = simulate(&study, None).expect("a run");
+        assert_eq!(motion.get("text"), Some(&json!(run.to_string())));
+        let worst = found.iter().find(|answer| kind(answer) == "worst").expect("a worst");
+        let energy = run.summary.largest(Measure::Energy);
+        assert_eq!(worst.get("value").and_then(Value::as_f64), Some(energy));
+        let curve = motion.numbers("forcing").expect("a curve").into_iter().fold(0.0, f64::max);
+        let peak = if text.is_some() { 0.2 * 9.80665 } else { 10_000.0 };
+        assert!((curve / peak - 1.0).abs() < 1e-2, "{curve} {peak}");
+    }
+    // Back to the study's own, after a slip that changed nothing.
+    let slip = json!({ "pulse": "half sine", "of": "force", "peak": 10, "unit": "kg", "duration": 0.1 });
+    let messages = vec![force(&pulse, None), force(&slip, None), force(&Value::Null, None), look];
+    let found = answers(messages, |answer| kind(answer) == "done");
+    let refused = found.iter().find(|answer| kind(answer) == "refused").expect("a slip");
+    assert!(
+        refused.get("force") == Some(&json!(true))
+            && refused.get("problem").is_some_and(|words| words.to_string().contains("N, kN"))
+    );
+    let last = found.iter().rfind(|answer| kind(answer) == "hello").expect("the study");
+    assert_eq!(last.get("transient"), Some(&json!(false)));
+}
+
+fn text_of(start: &Start, set: &[(&str, f64)]) -> String {
+    text(start, &place(DamperKind::Ssvi, set), What::Study)
+}
+
+/// Every parameter that the scene has can be turned, within what a study may have.
+#[test]
+fn contract_every_parameter_of_the_scene_can_be_turned() {
+    let controls = start().controls();
+    let scene = start().study().scene;
+    let there: Vec<&str> =
+        Parameter::ALL.iter().filter(|one| one.of(&scene).is_some()).map(|one| one.symbol()).collect();
+    assert!(there.len() >= 20 && controls.len() == there.len(), "{} {}", controls.len(), there.len());
+    for control in &controls {
+        assert!(there.contains(&control.name), "{}", control.name);
+        for value in control.range {
+            let found = start().at(&place(DamperKind::Ssvi, &[(control.name, value)]));
+            assert!(found.is_ok(), "{} = {value}: {:?}", control.name, found.err());
+        }
+    }
+    let k2 = controls.iter().find(|control| control.name == "k2").expect("a control");
+    assert_eq!((k2.bounds, k2.of_contact), ([Some(10.0), Some(600.0)], false));
+    assert!(
+        controls
+            .iter()
+            .any(|control| control.name == "R" && control.of_contact && control.bounds == [None; 2])
+    );
+}
+
+/// What is no pulse and no record is refused with its field; no file of the server is read.
+#[test]
+fn contract_what_is_no_pulse_and_no_record_is_refused() {
+    let under = |forcing: Value, text: Option<&str>| {
+        let Value::Object(fields) = forcing else { panic!("an object") };
+        start().under(fields, text).expect_err("refused")
+    };
+    let file = json!({ "record": concat!(env!("CARGO_MANIFEST_DIR"), "/../../studies/records/quake.csv"), "of": "force" });
+    assert_eq!(under(file.clone(), None).problem, "record: the text of its file is missing");
+    for (text, words) in [
+        ("", "is empty"),
+        ("t,a\n0,1\n", "samples"),
+        ("t,a\n0,1\n0,2\n", "does not come after"),
+        ("t,a\n0,x\n", "line 2"),
+    ] {
+        let refused = under(file.clone(), Some(text));
+        assert_eq!(refused.field.as_deref(), Some("record"));
+        assert!(refused.problem.contains(words), "{}", refused.problem);
+    }
+    let harmonics = json!({ "harmonics": [], "of": "force", "duration": 1 });
+    assert_eq!(under(harmonics, None).field.as_deref(), Some("harmonics"));
+    let long = json!({ "pulse": "rectangle", "of": "force", "peak": 1, "duration": 1e6 });
+    assert_eq!(under(long, None).field.as_deref(), Some("T"));
+    let padded = format!("{{\"force\":{{\"forcing\":null{}}}}}", " ".repeat(MOST_BYTES));
+    assert!(read(&padded).is_ok(), "a record may be long");
+    assert!(
+        read(&format!("{{\"force\":{}", " ".repeat(MOST_RECORD)))
+            .expect_err("too long")
+            .problem
+            .contains("at most")
+    );
+}
+
 /// A figure of the response has what the page has: each curve, and which design it is.
 #[test]
 fn contract_a_figure_has_the_pinned_designs() {
     let pin = |k2: f64| Some(place(DamperKind::Ssvi, &[("k2", k2)]));
-    let text = |pins: [Option<Place>; 2]| {
-        let written =
-            texts::written(&start(), &place(DamperKind::Ssvi, &[]), What::Response, &pins, &|| false)
-                .expect("written");
-        written.get("text").and_then(Value::as_str).expect("text").to_owned()
-    };
+    let here = place(DamperKind::Ssvi, &[]);
+    let text = |pins| words(&written(&start(), &here, What::Response, pins, None).expect("written"));
     let lines = |text: &str| text.matches("<path").count();
     let (alone, both) = (text([None, None]), text([pin(300.0), pin(450.0)]));
     assert!(lines(&both) >= lines(&alone) + 2, "{} {}", lines(&alone), lines(&both));
@@ -289,10 +485,7 @@ fn contract_a_figure_has_the_pinned_designs() {
     }
     let second = text([None, pin(450.0)]);
     assert!(second.contains(">B<") && !second.contains(">A<"));
-    let wrong =
-        texts::written(&start(), &place(DamperKind::Ssvi, &[]), What::Response, &[pin(-1.0), None], &|| {
-            false
-        });
+    let wrong = written(&start(), &here, What::Response, [pin(-1.0), None], None);
     assert_eq!(wrong.expect_err("refused").field.as_deref(), Some("k2"));
 }
 

@@ -91,6 +91,17 @@ pub fn at_its_own(study: &Study, scene: Scene) -> f64 {
         .map_or(f64::NAN, |term| energy(study, scene, &Objective { omega: None, ..term.clone() }))
 }
 
+/// Whether the objective looks at frequencies that are not drawn: those of every k1 about its own natural frequency, where the figure has the
+/// band of one.
+fn reaches_beyond(term: &Objective) -> bool {
+    term.k1.is_some() && term.omega.is_some_and(|band| band.relative)
+}
+
+/// The largest value of a curve; NaN where it has none.
+fn drawn(rows: &[(f64, [f64; 3])], curve: usize) -> f64 {
+    rows.iter().map(|row| row.1[curve]).filter(|value| value.is_finite()).fold(f64::NAN, f64::max)
+}
+
 fn picture(study: &Study, rows: &[(f64, [f64; 3])], worst: [f64; 3]) -> String {
     let lines: [(&str, Stroke); 3] = [
         ("no damper", Stroke::new(BLACK, 1.1, Dash::Short)),
@@ -103,7 +114,21 @@ fn picture(study: &Study, rows: &[(f64, [f64; 3])], worst: [f64; 3]) -> String {
         true => format!(": {}", measured(value, quantity)),
         false => String::new(),
     };
-    let words: Vec<String> = (0..3).map(|i| format!("{}{}", lines[i].0, said(worst[i]))).collect();
+    let all =
+        |of: [f64; 3]| -> Vec<String> { (0..3).map(|i| format!("{}{}", lines[i].0, said(of[i]))).collect() };
+    let objective = study.objective();
+    let is_beyond = first(&objective).is_some_and(reaches_beyond);
+    let mut caption = vec![MadeBy::new(study).to_string()];
+    if is_beyond {
+        let worst = all(worst).join("; ");
+        caption.insert(
+            0,
+            format!(
+                "The legend has the largest of each curve. Over every k1, each over its own band: {worst}."
+            ),
+        );
+    }
+    let words = all(if is_beyond { [0, 1, 2].map(|i| drawn(rows, i)) } else { worst });
     let layers = lines.iter().enumerate().map(|(i, &(_, stroke))| {
         let points = rows.iter().map(|(omega, energies)| (*omega, energies[i]));
         Layer::line(points, stroke)
@@ -123,7 +148,38 @@ fn picture(study: &Study, rows: &[(f64, [f64; 3])], worst: [f64; 3]) -> String {
             words.join("; ")
         ),
         legend: lines.iter().map(|(_, stroke)| Key::Line(*stroke)).zip(words).collect(),
-        caption: vec![MadeBy::new(study).to_string()],
+        caption,
         ..Sheet::of(format!("{name} over the band"), vec![chart])
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The paper's damper peaks at 850 J where it is drawn and at 1051 J with another k1 beyond: the legend names what is drawn.
+    #[test]
+    fn regress_the_legend_names_what_is_drawn() {
+        let study = |relative: bool| {
+            let text = format!(
+                r#"{{ "scene": {{ "primary": {{ "m1": 1000, "c1": 452, "k1": 39500 }}, "forcing": {{ "P": 800, "omega": 6.28 }},
+                    "damper": {{ "m2": 60, "k2": 215, "c2": 232 }} }}, "window": {{ "t0": 50, "T": 100 }},
+                    "optimize": {{ "vary": ["k2", "c2"], "objective": {{ "omega": {{ "from": {}, "to": {}, "samples": 9, "relative": {relative} }},
+                    "k1": {{ "set": [20000, 39500] }}, "response": "steady" }} }} }}"#,
+                if relative { "0.8" } else { "5" },
+                if relative { "1.25" } else { "8" },
+            );
+            retune_study::read::from_text(&text, "robust.json").expect("a study")
+        };
+        let rows = [(5.0, [400.0, 300.0, f64::NAN]), (6.0, [1500.0, 850.0, f64::NAN])];
+        let page = |relative| picture(&study(relative), &rows, [1570.0, 1051.0, f64::NAN]);
+        let plain = |text: &str| {
+            text.split("<tspan")
+                .map(|part| part.split_once('>').map_or(part, |(_, rest)| rest))
+                .collect::<String>()
+        };
+        let (own, one) = (plain(&page(true)), plain(&page(false)));
+        assert!(own.contains(": 850 J") && own.contains("Over every k") && own.contains("1051 J"), "{own}");
+        assert!(one.contains(": 1051 J") && !one.contains("850 J") && !one.contains("Over every k"), "{one}");
+    }
 }

@@ -1,5 +1,5 @@
 //! `just lab accuracy`: every method on every scene at every tolerance, into `results/accuracy/`; `just lab accuracy manifest` writes only its
-//! manifest.
+//! manifest, and `just lab accuracy pictures` only the charts of its `runs.csv`, and the manifest.
 #![allow(clippy::print_stderr)]
 
 use retune_jobs::methods;
@@ -28,12 +28,16 @@ fn main() -> Any<()> {
     if std::env::args().nth(1).as_deref() == Some("manifest") {
         return seal();
     }
+    let table = folder.join("runs.csv");
+    let names: Vec<&'static str> = cases.iter().map(|case| case.name).collect();
+    if std::env::args().nth(1).as_deref() == Some("pictures") {
+        pictures(folder, &cases, &parse(&fs::read_to_string(&table)?, &names))?;
+        return seal();
+    }
     fs::write("tests/reference/external/scenes.json", scenes_json(&cases)?)?;
     let references = cases.iter().map(Reference::of).collect::<Result<Vec<_>, _>>()?;
-    let table = folder.join("runs.csv");
     // `accuracy draw`: updates the runs of other programs and the pictures from the existing runs.
     let mut rows: Vec<Row> = if std::env::args().nth(1).as_deref() == Some("draw") {
-        let names: Vec<&'static str> = cases.iter().map(|c| c.name).collect();
         let outside = |row: &Row| ["Octave", "SciPy", "SUNDIALS"].iter().any(|p| row.program.starts_with(p));
         parse(&fs::read_to_string(&table)?, &names).into_iter().filter(|row| !outside(row)).collect()
     } else {
@@ -53,15 +57,21 @@ fn main() -> Any<()> {
         folder.join("README.md"),
         text::text(&cases, &references, &rows, &savings, &statistics::all()?),
     )?;
+    pictures(folder, &cases, &rows)?;
+    savings::chart(&folder.join("models.svg"), &savings)?;
+    seal()
+}
+
+/// The charts of error against cost.
+fn pictures(folder: &Path, cases: &[Case], rows: &[Row]) -> Any<()> {
     for (name, measure, cost) in [
         ("time", Measure::E1max, Cost::Time),
         ("evaluations", Measure::E1max, Cost::Evaluations),
         ("state", Measure::State, Cost::Time),
     ] {
-        work_precision(&folder.join(format!("{name}.svg")), &cases, &rows, measure, cost)?;
+        work_precision(&folder.join(format!("{name}.svg")), cases, rows, measure, cost)?;
     }
-    savings::chart(&folder.join("models.svg"), &savings)?;
-    seal()
+    Ok(())
 }
 
 fn row(

@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
+# What moves a structure at a frequency, by the fields of `scene.forcing`.
+HARMONIC = ("P", "imbalance", "base", "base_acceleration")
+
+
 class Comparison:
     """Dampers that were each tuned for the same problem, the best first."""
 
@@ -76,8 +80,8 @@ def compare(
 ) -> Comparison:
     """Tunes each damper for the structure, the forcing, the objective and the limits of a problem, and compares them.
 
-    A damper with all its numbers is tuned within the bounds of the problem. Of one with its mass alone the search is that of
-    `retune design`: k2 is bounded by the problem's largest k2, if it has one, everything else as wide as the structure suggests. The results go
+    Any number of dampers, by any quantity that the problem makes small (``quantity="x1max"``), whatever moves the structure. A damper with all its numbers is tuned within the bounds of the problem. Of one with its mass alone the search is that of
+    `retune design`, which is for a forcing with a frequency: k2 is bounded by the problem's largest k2, if it has one, everything else as wide as the structure suggests. The results go
     to ``out``, by default ``results/`` and the name of the problem, one directory for each damper.
     """
     place = Path(os.fspath(out)) if out is not None else Path("results") / str(problem.study["name"])
@@ -134,10 +138,13 @@ def _designed(problem: Problem, study: dict[str, Any], damper: TMD | SSVI, missi
     """The study with which `retune design` would tune a damper of this mass."""
     scene = study["scene"]
     forcing = scene["forcing"]
-    if "P" not in forcing:
+    by = next((name for name in HARMONIC if name in forcing), None)
+    if by is None:
         first = missing[0]
         raise StudyError(
-            f"damper.{first}: missing, and only for a force P it is found from the structure: give {', '.join(missing)}", f"damper.{first}"
+            f"damper.{first}: missing, and only for a forcing with a frequency ({', '.join(HARMONIC)}) it is found from the structure: "
+            f"give {', '.join(missing)}",
+            f"damper.{first}",
         )
     band = study["optimize"]["objective"].get("omega")
     unit = (scene["primary"]["k1"] / scene["primary"]["m1"]) ** 0.5 if band and band.get("relative") else 1.0
@@ -145,7 +152,7 @@ def _designed(problem: Problem, study: dict[str, Any], damper: TMD | SSVI, missi
     stiffest = dict(zip(problem.names, problem.bounds)).get("k2", (0.0, float("inf")))[1]
     wishes = {
         **scene["primary"],
-        "P": forcing["P"],
+        by: forcing[by],
         "band": ends,
         "mass": damper.m2,
         "k2_max": stiffest if stiffest < float("inf") else None,

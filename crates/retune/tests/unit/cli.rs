@@ -29,6 +29,7 @@ fn contract_common_options_mean_the_same_of_every_command() {
             seen += 1;
         }
     }
+    assert_eq!(words("explore", "threads"), words("optimize", "threads"));
     assert!(seen >= 12, "{seen}");
 }
 
