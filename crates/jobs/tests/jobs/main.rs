@@ -6,6 +6,7 @@ mod certify;
 mod damaged;
 mod describe;
 mod design;
+mod design_records;
 mod evaluate;
 mod fronts;
 mod interrupted;
