@@ -24,6 +24,7 @@ mod retention;
 mod scenes;
 mod shards;
 mod simulate;
+mod stationary;
 mod sweep;
 mod sweep_points;
 mod table2;
