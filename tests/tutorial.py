@@ -59,10 +59,10 @@ def main():
             sys.exit(f"not in studies/tutorial:\n{shown}")
     count, wrong = 0, 0
     with tempfile.TemporaryDirectory() as desk:
-        for file in (ROOT / "studies/tutorial").iterdir():
-            shutil.copy(file, desk)
+        shutil.copytree(ROOT / "studies", pathlib.Path(desk) / "studies")
+        place = pathlib.Path(desk) / "studies/tutorial"
         for command, expected in blocks(page):
-            ran = subprocess.run(command, shell=True, cwd=desk, env=environment, text=True,
+            ran = subprocess.run(command, shell=True, cwd=place, env=environment, text=True,
                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
             wanted = matches(expected, [comparable(line) for line in ran.stdout.splitlines()])
             if ran.returncode != 0 or wanted is not None:

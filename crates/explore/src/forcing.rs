@@ -125,7 +125,7 @@ mod tests {
             .map(|i| format!("{},{}\n", f64::from(i) / 1e3, if i == 5003 { 7.0 } else { 0.1 }))
             .collect();
         let mut record = forcing(json!({ "record": "a.csv", "of": "force" }));
-        retune_study::read_record(&mut record, &format!("t,f\n{rows}")).expect("a record");
+        retune_study::read_record_text(&mut record, &format!("t,f\n{rows}")).expect("a record");
         let Thin { t, columns: [values] } = curve(&record, [0.0, 20.0], 200);
         assert!(t.len() < 1000 && t.is_sorted() && t.first() == Some(&0.0) && t.last() == Some(&20.0));
         assert_eq!(values.iter().copied().fold(0.0, f64::max), 7.0);
@@ -147,7 +147,7 @@ mod tests {
             "{found:?}"
         );
         let mut record = forcing(json!({ "record": "a.csv", "of": "base acceleration", "unit": "g" }));
-        retune_study::read_record(&mut record, "t,a\n1,0\n2,1\n4,-1\n").expect("a record");
+        retune_study::read_record_text(&mut record, "t,a\n1,0\n2,1\n4,-1\n").expect("a record");
         let found = [0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 4.5].map(|t| at(&record, t) / 9.80665);
         assert_eq!(found, [0.0, 0.0, 0.5, 1.0, 0.0, -1.0, 0.0]);
         let imbalance = forcing(json!({ "imbalance": 0.5, "omega": 4 }));

@@ -10,7 +10,7 @@ use retune_jobs::Error;
 use retune_jobs::design::Specification;
 use retune_model::{Contact, Damper, Forcing, Measure, NonNegative, Parameter, Scene, Surfaces, Unit};
 use retune_optim::Objective;
-use retune_study::{Rule, Setting, Span, Study, StudyError, read_record};
+use retune_study::{Rule, Setting, Span, Study, StudyError, read_record_text};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -153,7 +153,7 @@ impl Start {
         let mut forcing: Forcing = serde_json::from_value(Value::Object(forcing)).map_err(Refused::whole)?;
         match text {
             Some(text) => {
-                read_record(&mut forcing, text).map_err(|problem| Refused::of("record", problem))?;
+                read_record_text(&mut forcing, text).map_err(|problem| Refused::of("record", problem))?;
             }
             None if forcing.record_mut().is_some() => {
                 return Err(Refused::of("record", "the text of its file is missing"));

@@ -1,13 +1,17 @@
 //! `design`: from a structure and what its damper may be to an answer. First the closed form: no damper, the formulas that fit the goal, the best
-//! TMD. Then an SSVI NES, from good designs that are known. All are compared by every quantity over the band, and the better one is certified.
+//! TMD. Then an SSVI NES, from good designs that are known. All are compared by every quantity over the band, or under a shock or a record, and the better one is certified.
 
 mod answer;
 mod candidate;
 mod comparison;
+mod driving;
+mod history;
 mod modes;
+mod motion;
 mod page;
 mod reading;
 mod requirements;
+mod simplex;
 mod ssvi;
 mod table;
 mod tmd;
@@ -15,6 +19,7 @@ mod typed;
 mod words;
 
 use comparison::Comparison;
+pub use driving::Driving;
 pub use modes::structure;
 use requirements::Dampers;
 pub use requirements::Requirements;
@@ -27,7 +32,7 @@ use crate::{Error, Observer, Request, pages, resolved};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
-/// The files of an answer.
+/// The files of an answer; `band.svg` of a harmonic, `motion.svg` of a shock or a record.
 pub static KIND: Kind = Kind {
     command: "design",
     answer: "design.json",
@@ -38,6 +43,7 @@ pub static KIND: Kind = Kind {
         artefact("answer.txt", Content::Derived),
         artefact("studies-*.json", Content::Derived),
         artefact("band.svg", Content::Derived),
+        artefact("motion.svg", Content::Derived),
         artefact("damper.svg", Content::Derived),
         artefact("README.md", Content::Derived),
         artefact("report.html", Content::Derived),

@@ -154,7 +154,7 @@ impl Largest {
         let less: Vec<String> = less.collect();
         let part = match study.objective().terms().first().map(|(_, term)| term.response) {
             Some(Response::Settled) => "once settled".to_owned(),
-            Some(Response::Steady) => "in the steady motion".to_owned(),
+            Some(Response::Steady) if !study.objective().is_stationary() => "in the steady motion".to_owned(),
             Some(Response::Motions) => "over all motions that are found".to_owned(),
             _ => format!("from {} s on", short(study.window.t0.get())),
         };
@@ -234,8 +234,10 @@ impl Needs {
 
     /// The lines of an answer: what they are of, and their words.
     pub fn lines(&self, study: &Study) -> Vec<(&'static str, String)> {
+        // A stationary random motion has no largest value: what is told is of one draw.
+        let draw = if study.objective().is_stationary() { ", in the draw of the study" } else { "" };
         let mut lines = vec![
-            ("needs", self.damper.damper_words()),
+            ("needs", format!("{}{draw}", self.damper.damper_words())),
             ("there", format!("the structure {}", self.damper.structure_words())),
         ];
         let place = self.damper.omega(Measure::ContactForce);

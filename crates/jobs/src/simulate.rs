@@ -3,6 +3,7 @@
 use crate::Error;
 use crate::contacts::{Contacts, Powers};
 use crate::summary::Summary;
+use retune_model::{Measure, Rms, Stationary};
 use retune_solver::{Rows, Sample, trajectory};
 use retune_store::{Pending, order::may_write};
 use retune_study::{Study, hertz_and_rpm};
@@ -46,7 +47,18 @@ pub fn simulate(study: &Study, trajectory: Option<Trajectory>) -> Result<Simulat
     let powers = Powers::new(losses, window.to - window.from);
     let warnings = contacts.iter().flat_map(Contacts::warnings).collect();
     let transient = study.transient();
-    Ok(Simulation { summary, hertz, rpm, transmissibility, contacts, powers, warnings, transient })
+    let stationary = Means::of(study);
+    Ok(Simulation {
+        summary,
+        hertz,
+        rpm,
+        transmissibility,
+        contacts,
+        powers,
+        warnings,
+        transient,
+        stationary,
+    })
 }
 
 /// One run as the command line shows it: its summary, and the same in the units and the ratio that engineers ask for.
@@ -73,6 +85,32 @@ pub struct Simulation {
     /// What is to be known of the transient in the window.
     #[serde(skip_serializing_if = "Option::is_none")]
     transient: Option<String>,
+    /// The stationary motion under the spectrum of which the force is a draw; none of any other, and of a damper with walls.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stationary: Option<Means>,
+}
+
+/// The mean energy and the root mean squares of a stationary random motion, SI units.
+#[derive(Clone, Debug)]
+struct Means(Stationary);
+
+impl Means {
+    fn of(study: &Study) -> Option<Self> {
+        let walls = study.scene.damper.and_then(|damper| damper.contact);
+        let found = walls.map_or_else(|| Stationary::new(&study.scene, study.solver.rtol), |_| None);
+        found.map(Self)
+    }
+
+    fn each(&self) -> impl Iterator<Item = (Measure, f64)> + '_ {
+        Rms::ALL.into_iter().map(|rms| (Measure::Stationary(rms), self.0.get(rms)))
+    }
+}
+
+impl Serialize for Means {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let all = self.each().map(|(measure, value)| (measure.name(), value));
+        serializer.collect_map(all.chain([("relative_error", self.0.error)]))
+    }
 }
 
 impl std::fmt::Display for Simulation {
@@ -85,7 +123,21 @@ impl std::fmt::Display for Simulation {
         for words in &self.warnings {
             write!(f, "\nwarning     {words}")?;
         }
-        self.transient.iter().try_for_each(|words| write!(f, "\nnote        {words}"))
+        self.transient.iter().try_for_each(|words| write!(f, "\nnote        {words}"))?;
+        let Some(means) = &self.stationary else { return Ok(()) };
+        for (measure, value) in means.each() {
+            let (name, unit) = (measure.name(), measure.unit());
+            if value.is_finite() {
+                write!(f, "\n{name:<11} {value:<12.7} {unit}")?;
+            } else {
+                write!(f, "\n{name:<11} without bound")?;
+            }
+        }
+        write!(
+            f,
+            "\nstationary  under the whole spectrum; the sums of its integral differ by {:.0e}",
+            means.0.error
+        )
     }
 }
 

@@ -159,6 +159,17 @@ impl Course {
         }
     }
 
+    /// The spectrum of which it is a draw, if it is one.
+    pub fn spectrum(&self) -> Option<&'static Spectrum> {
+        match self {
+            Self::Made(made) => match &made.recipe().form {
+                Form::Spectrum(spectrum) => Some(spectrum),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
     /// The samples of a course that has some.
     pub fn samples(&self) -> Option<&'static Samples> {
         match self {

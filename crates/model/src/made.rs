@@ -70,14 +70,23 @@ pub struct Sweep {
 
 /// A stationary random force with this one-sided spectral density, drawn by the sum of M. Shinozuka and G. Deodatis (Appl. Mech. Rev. 44
 /// (1991) 191): harmonics at the middles of equal intervals `Δω`, of amplitude `√(2 S(ω) Δω)` and with phases drawn from the seed. There are so
-/// many that the sum does not repeat within its duration.
+/// many that the sum does not repeat within its duration. In the place of a table `white` with `to` is white noise, of which a draw has the
+/// frequencies up to `to`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Spectrum {
     /// omega, angular frequencies of the table, growing, rad/s.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub omega: Vec<NonNegative>,
     /// density S at each of them, straight lines between: the variance is its integral over omega. The square of the unit, times s/rad.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub density: Vec<NonNegative>,
+    /// white, the density of white noise at all frequencies, in the place of a table. The square of the unit, times s/rad.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub white: Option<NonNegative>,
+    /// to, the largest frequency of a draw of white noise, rad/s; the stationary motion is that under all frequencies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to: Option<Positive>,
     /// seed of the draw.
     #[serde(default)]
     pub seed: u64,
@@ -88,7 +97,8 @@ pub struct Spectrum {
 pub enum Unmade {
     /// A spectrum that is no table.
     #[error(
-        "`spectrum`: {0} frequencies with {1} densities are not allowed here: give two or more frequencies that grow, and a density for each"
+        "`spectrum`: {0} frequencies with {1} densities are not allowed here: give two or more frequencies that grow, and a density for each, or \
+         `white` with `to` alone"
     )]
     Table(usize, usize),
     /// A sum of nothing.
@@ -190,7 +200,7 @@ impl Recipe {
         let duration = self.duration.get();
         let longest = match (&self.step, &self.form) {
             (Some(step), _) => step.get(),
-            (None, Form::Spectrum(spectrum)) => FINE / spectrum.omega.last().map_or(0.0, |omega| omega.get()),
+            (None, Form::Spectrum(spectrum)) => FINE / spectrum.ends()[1],
             (None, _) => {
                 let [force, curvature] = self.sizes();
                 (ERROR * 24.0 / 5.0 * force / curvature).sqrt()
@@ -279,13 +289,24 @@ impl Term {
 
 impl Spectrum {
     fn is_table(&self) -> bool {
-        let Self { omega, density, .. } = self;
+        let Self { omega, density, white, to, .. } = self;
+        if white.is_some() || to.is_some() {
+            return self.is_white().is_some() && omega.is_empty() && density.is_empty();
+        }
         omega.len() >= 2
             && omega.len() == density.len()
             && omega.windows(2).all(|pair| pair[0].get() < pair[1].get())
     }
 
-    fn ends(&self) -> [f64; 2] {
+    /// The density of white noise, if it is some.
+    pub fn is_white(&self) -> Option<f64> {
+        self.to.and(self.white).map(NonNegative::get)
+    }
+
+    pub(crate) fn ends(&self) -> [f64; 2] {
+        if let Some(to) = self.to {
+            return [0.0, to.get()];
+        }
         [self.omega.first(), self.omega.last()].map(|omega| omega.map_or(0.0, |omega| omega.get()))
     }
 
@@ -305,7 +326,10 @@ impl Spectrum {
         })
     }
 
-    fn density_at(&self, omega: f64) -> f64 {
+    pub(crate) fn density_at(&self, omega: f64) -> f64 {
+        if let Some(white) = self.is_white() {
+            return white;
+        }
         let i = self.omega.partition_point(|known| known.get() <= omega).clamp(1, self.omega.len() - 1);
         let [a, b] = [self.omega[i - 1].get(), self.omega[i].get()];
         let [low, high] = [self.density[i - 1].get(), self.density[i].get()];

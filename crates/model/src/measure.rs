@@ -1,7 +1,7 @@
 //! The catalogue of quantities: each largest value of a motion once, with its name, words and unit.
 
-use crate::Unit;
 use crate::unit::{ACCELERATION, ENERGY, FORCE, LENGTH, MODULUS, VELOCITY};
+use crate::{Rms, Unit};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -27,10 +27,12 @@ pub enum Measure {
     ContactForce,
     /// The pressure of Hertz's contact at the middle of either wall's contact area.
     ContactPressure,
+    /// What a stationary random motion has in the place of a largest value.
+    Stationary(Rms),
 }
 
 impl Measure {
-    /// All of them.
+    /// All largest values of a run.
     pub const ALL: [Self; 8] = [
         Self::Energy,
         Self::Displacement,
@@ -59,6 +61,7 @@ impl Measure {
             Self::Stroke => ["stroke", "stroke", "the largest stroke of the damper", "m"],
             Self::ContactForce => ["contact_force", "walls", "the largest contact force", "N"],
             Self::ContactPressure => ["contact_pressure", "pressure", "the largest contact pressure", "Pa"],
+            Self::Stationary(rms) => rms.entry(),
         }
     }
 
@@ -91,17 +94,46 @@ impl Measure {
             Self::Acceleration => ACCELERATION,
             Self::GroundForce | Self::ContactForce => FORCE,
             Self::ContactPressure => MODULUS,
+            Self::Stationary(rms) => rms.largest().units(),
         }
     }
 
     /// Whether only a motion with a damper has it.
     pub const fn is_of_damper(self) -> bool {
-        matches!(self, Self::Stroke) || self.is_of_walls()
+        matches!(self, Self::Stroke | Self::Stationary(Rms::Stroke)) || self.is_of_walls()
     }
 
     /// Whether only a motion that touches a wall has it.
     pub const fn is_of_walls(self) -> bool {
         matches!(self, Self::ContactForce | Self::ContactPressure)
+    }
+
+    /// The largest value of a run: itself, or that in the place of which a stationary motion has it.
+    pub const fn of_run(self) -> Self {
+        match self {
+            Self::Stationary(rms) => rms.largest(),
+            largest => largest,
+        }
+    }
+
+    /// Its place in [`Self::ALL`].
+    pub const fn index(self) -> usize {
+        match self {
+            Self::Energy => 0,
+            Self::Displacement => 1,
+            Self::Velocity => 2,
+            Self::Acceleration => 3,
+            Self::GroundForce => 4,
+            Self::Stroke => 5,
+            Self::ContactForce => 6,
+            Self::ContactPressure => 7,
+            Self::Stationary(rms) => rms.largest().index(),
+        }
+    }
+
+    /// All that may be made small: largest values, and what a stationary motion has.
+    pub fn every() -> impl Iterator<Item = Self> + Clone {
+        Self::ALL.into_iter().chain(Rms::ALL.map(Self::Stationary))
     }
 
     /// Name, words and unit, as schemas describe it.
@@ -114,10 +146,9 @@ impl TryFrom<Cow<'_, str>> for Measure {
     type Error = String;
 
     fn try_from(name: Cow<'_, str>) -> Result<Self, String> {
-        let known = Self::ALL.into_iter().find(|measure| measure.name() == name);
-        known.ok_or_else(|| {
-            let all = Self::ALL.map(|measure| format!("`{}`", measure.name())).join(", ");
-            format!("unknown variant `{name}`, expected one of {all}")
+        Self::every().find(|measure| measure.name() == name).ok_or_else(|| {
+            let all: Vec<String> = Self::every().map(|measure| format!("`{}`", measure.name())).collect();
+            format!("unknown variant `{name}`, expected one of {}", all.join(", "))
         })
     }
 }
@@ -137,7 +168,7 @@ impl JsonSchema for Measure {
         let one = |measure: Self| json_schema!({ "type": "string", "const": measure.name(), "description": measure.sentence() });
         json_schema!({
             "description": "A quantity whose largest value tells how much a motion matters.",
-            "oneOf": Self::ALL.map(one)
+            "oneOf": Self::every().map(one).collect::<Vec<_>>()
         })
     }
 }
@@ -154,12 +185,12 @@ impl<T: Copy> PerMeasure<T> {
 
     /// The value for `measure`.
     pub fn get(&self, measure: Measure) -> T {
-        self.0[measure as usize]
+        self.0[measure.index()]
     }
 
     /// Sets the value for `measure`.
     pub fn set(&mut self, measure: Measure, value: T) {
-        self.0[measure as usize] = value;
+        self.0[measure.index()] = value;
     }
 }
 

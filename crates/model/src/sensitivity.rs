@@ -172,6 +172,8 @@ impl Coupled {
                 self.wall_pressure(side, depth) * (0.5 * deeper / depth + self.hertz_by(parameter) - radius)
             }
             Measure::ContactPressure => 0.0,
+            // A moment of a run has none.
+            Measure::Stationary(_) => f64::NAN,
         }
     }
 }

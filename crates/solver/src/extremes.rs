@@ -217,13 +217,15 @@ enum Observed<Q> {
 fn observed<'a, S: Structure<N>, const N: usize>(
     measure: Measure,
 ) -> Observed<fn(&'a S, f64) -> StructureMotion<'a, S, N>> {
-    match measure {
+    match measure.of_run() {
         Measure::Energy => Observed::Energy,
         Measure::Displacement => Observed::Motion(StructureMotion::displacement),
         Measure::Velocity => Observed::Motion(StructureMotion::velocity),
         Measure::Acceleration => Observed::Motion(StructureMotion::acceleration),
         Measure::GroundForce => Observed::Motion(StructureMotion::ground_force),
-        Measure::Stroke | Measure::ContactForce | Measure::ContactPressure => Observed::Damper,
+        Measure::Stroke | Measure::ContactForce | Measure::ContactPressure | Measure::Stationary(_) => {
+            Observed::Damper
+        }
     }
 }
 

@@ -47,7 +47,7 @@ pub use format::{Coarse, GridAxis, Margins, Optimize, Refine, Solver, Span, Stud
 pub use fronts::{Fronts, FrontsPlan, Sweep, bounded, read_fronts};
 pub use global::GlobalSearch;
 pub use read::{found_in, read, read_paper};
-pub use records::read_text as read_record;
+pub use records::{read_record, read_record_text};
 pub use rule::Rule;
 pub use search::{MOST_GRID_POINTS, Search, check_name, clipped, name_from};
 pub use set::{Settable, Setting, SettingError, start};

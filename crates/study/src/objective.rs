@@ -2,7 +2,7 @@
 
 use super::format::{Coarse, Study};
 use super::rule::Rule;
-use retune_model::{Forcing, Measure, Parameter, Scene};
+use retune_model::{Forcing, Measure, Of, Parameter, Rms, Scene};
 use retune_optim::{
     Ensemble, FrequencyBand, Goal, Limits, Objective, Part, Response, Statistic, StiffnessRange, Stiffnesses,
 };
@@ -50,9 +50,13 @@ pub(super) fn check(objective: &Objective, path: &str, scene: &Scene) -> Result<
     if !objective.records.is_empty() || objective.records_by.is_some() {
         check_records(objective, path, forcing)?;
     }
+    if objective.is_stationary() {
+        return check_stationary(objective, path, scene);
+    }
     if passes && (objective.omega.is_some() || objective.response != Response::Window) {
         let name = if objective.omega.is_some() { "omega" } else { "response" };
-        let allowed = "nothing: a free decay, a pulse and a record have no frequency, and all there is of the motion is in the window";
+        let allowed = "nothing: a free decay, a pulse and a record have no frequency, and all there is of the motion is in the window (under a \
+                       `spectrum` the stationary motion has root mean squares: give `quantity` \"x1rms\" with `response` \"steady\")";
         return bad(field(name), "what is given".to_owned(), allowed);
     }
     let band = |name: &str, unit, [from, to]: [f64; 2], samples: usize| {
@@ -119,6 +123,51 @@ pub(super) fn check(objective: &Objective, path: &str, scene: &Scene) -> Result<
         }
         _ => Ok(()),
     }
+}
+
+/// A stationary random motion has root mean squares, which are those of a linear system under a spectrum.
+fn check_stationary(objective: &Objective, path: &str, scene: &Scene) -> Result<(), Rule> {
+    let bad = |name: &str, value: &str, allowed| {
+        Err(Rule::not_allowed(format!("{path}.{name}"), value.to_owned(), allowed))
+    };
+    let quantity = objective.quantity.name();
+    let history = scene.forcing.history();
+    let spectrum = history.and_then(|history| Some((history.of, history.course.spectrum()?)));
+    let Some((of, spectrum)) = spectrum else {
+        return bad(
+            "quantity",
+            quantity,
+            "a largest value: only a motion under a `spectrum` is stationary and random",
+        );
+    };
+    if objective.response != Response::Steady {
+        return bad(
+            "quantity",
+            quantity,
+            "a largest value, or `response` \"steady\" beside it: a window has largest values",
+        );
+    }
+    if scene.damper.is_some_and(|damper| damper.contact.is_some()) {
+        let allowed = "a largest value in a window: a random stroke exceeds every gap at some time, and contacts make the motion nonlinear; \
+                       leave out `contact` for the damper without walls";
+        return bad("quantity", quantity, allowed);
+    }
+    let of_force = of == Of::Force && spectrum.is_white().is_some();
+    if objective.quantity == Measure::Stationary(Rms::Acceleration) && of_force {
+        return bad(
+            "quantity",
+            quantity,
+            "another quantity: white noise that acts on a mass accelerates it without bound; or give a table",
+        );
+    }
+    if objective.omega.is_some() || objective.ensemble.is_some() || !objective.records.is_empty() {
+        return bad(
+            "quantity",
+            quantity,
+            "without omega, ensemble and records beside it: it is that under the spectrum of the scene",
+        );
+    }
+    Ok(())
 }
 
 /// Records stand in the place of one.

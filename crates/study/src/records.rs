@@ -36,13 +36,21 @@ pub(super) fn each<E>(
 }
 
 fn read_forcing(forcing: &mut Forcing, listed: bool, base: &Path) -> Result<(), Rule> {
+    named(forcing, base).map_err(|(file, problem)| Rule::Record { listed, file, problem })
+}
+
+/// Reads the record of a forcing, if it names a file with one; a path that is not absolute begins at `base`.
+///
+/// # Errors
+/// The file, and why it is no record.
+pub fn read_record(forcing: &mut Forcing, base: &Path) -> Result<(), String> {
+    named(forcing, base).map_err(|(file, problem)| format!("{file}: {problem}"))
+}
+
+fn named(forcing: &mut Forcing, base: &Path) -> Result<(), (String, String)> {
     let Some((of, record)) = forcing.record_mut() else { return Ok(()) };
     if record.samples().is_none() {
-        *record = whole(of, record, base).map_err(|problem| Rule::Record {
-            listed,
-            file: record.source().file.clone(),
-            problem,
-        })?;
+        *record = whole(of, record, base).map_err(|problem| (record.source().file.clone(), problem))?;
     }
     Ok(())
 }
@@ -65,7 +73,7 @@ fn samples(of: Of, source: &RecordFile, file: impl Read + Seek) -> Result<Sample
 ///
 /// # Errors
 /// The text holds no record: the line, and what is wrong with it.
-pub fn read_text(forcing: &mut Forcing, text: &str) -> Result<(), String> {
+pub fn read_record_text(forcing: &mut Forcing, text: &str) -> Result<(), String> {
     let Some((of, record)) = forcing.record_mut() else { return Ok(()) };
     *record = record.with(samples(of, record.source(), Cursor::new(text))?).whole();
     Ok(())

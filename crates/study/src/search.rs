@@ -100,6 +100,10 @@ impl Study {
         let variables = varied(&optimize.vary)?;
         check(&optimize.objective, "optimize.objective", &self.scene)?;
         check_limits(&optimize.limits, self.window.end.get())?;
+        if optimize.objective.is_stationary() && !optimize.limits.is_empty() {
+            let allowed = "none: limits are on largest values, of which a stationary random motion has none";
+            return Err(Rule::not_allowed("optimize.limits", "what is given", allowed));
+        }
         let tuned = |field, variable: &Parameter| match variables.contains(variable) {
             true => Ok(()),
             false => Err(Rule::NotVaried { field, variable: *variable }),

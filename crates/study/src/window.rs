@@ -2,7 +2,7 @@
 
 use crate::format::Span;
 use crate::{Rule, records};
-use retune_model::{NonNegative, Positive, Scene};
+use retune_model::{Course, NonNegative, Positive, Samples, Scene};
 use serde::Deserialize;
 use serde_json::Value;
 use std::f64::consts::TAU;
@@ -70,6 +70,12 @@ fn place(text: &str) -> Option<std::ops::Range<usize>> {
 impl crate::Study {
     /// A sentence on the transient that maxima in the window hold, if its share matters.
     pub fn transient(&self) -> Option<String> {
+        if let Some(Course::Record(record)) = self.scene.forcing.history().map(|history| history.course)
+            && let Some(end) = record.samples().map(Samples::end).filter(|end| *end < self.window.end.get())
+        {
+            let to = self.window.end.get();
+            return Some(format!("the record ends at {end} s; from there to T = {to} s the motion is free"));
+        }
         let (rate, t0) = (self.scene.slowest_decay(), self.window.t0.get());
         let left = (-rate * t0).exp();
         let passes = self.scene.forcing.is_transient();

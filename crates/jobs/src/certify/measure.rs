@@ -128,6 +128,10 @@ fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Ru
         // Between rigid walls there is no tolerance: the force is turned by as little, to tell whether the motion can be predicted.
         let turned = if rigid { TURNED * rtol } else { 0.0 };
         let ask = Ask { measure: quantity, phase: worst.phase + turned, ..Ask::default() };
+        if goal.objective.is_stationary() {
+            let value = goal.evaluate(&worst.scene, &settings, f64::INFINITY)?.value;
+            return Ok(Run { method, rtol, value: Amount::new(quantity, value) });
+        }
         let found = match response {
             Response::Window => extremes(&worst.scene, goal.window, &settings, ask),
             Response::Settled => settled(&worst.scene, goal.window, settle, &settings, ask),
@@ -148,8 +152,9 @@ fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Ru
         };
         Ok(Run { method, rtol, value: Amount::new(quantity, value) })
     };
-    // Motions are followed by the study's own method alone.
-    let other = |method: Method| (response != Response::Motions && !rigid) || method == Method::Hybrid;
+    // Motions are followed by the study's own method alone; of a stationary motion the tolerance is that of an integral.
+    let own = response == Response::Motions || goal.objective.is_stationary() || rigid;
+    let other = |method: Method| !own || method == Method::Hybrid;
     CONVERGENCE.par_iter().filter(|(method, _)| other(*method)).map(run).collect()
 }
 

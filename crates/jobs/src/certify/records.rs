@@ -44,7 +44,8 @@ impl Change {
 
 /// A design with its own value under other records; none where its study has no record.
 pub(super) fn other_records(study: &Study, own: Amount) -> Option<Records> {
-    study.scene.forcing.history()?;
+    // A stationary motion is that of the spectrum, whatever is drawn of it.
+    study.scene.forcing.history().filter(|_| !study.objective().is_stationary())?;
     let draws = (1..=DRAWS).map(Change::Draw);
     let changes: Vec<Change> = [Change::Sign, Change::Samples].into_iter().chain(draws).collect();
     let under: Vec<UnderRecord> = changes.into_par_iter().filter_map(|change| under(study, change)).collect();

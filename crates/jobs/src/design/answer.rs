@@ -44,7 +44,7 @@ pub(super) fn rows(requirements: &Requirements, compared: &Comparison) -> Vec<Ve
             let Need { value: own, omega, .. } = of.steady.get(measure);
             match own {
                 0.0 => "-".to_owned(),
-                _ if !own.is_finite() => value,
+                _ if !own.is_finite() || of.is_transient() => value,
                 _ => format!("{value}, {}", frequency(omega, requirements.frequencies)),
             }
         };
@@ -62,9 +62,9 @@ pub(super) fn rows(requirements: &Requirements, compared: &Comparison) -> Vec<Ve
 }
 
 fn table(requirements: &Requirements, compared: &Comparison) -> String {
-    let head: Vec<String> = std::iter::once("largest, where".to_owned())
-        .chain(compared.all().map(|of| of.what.name().to_owned()))
-        .collect();
+    let first = if compared.none.is_transient() { "largest" } else { "largest, where" };
+    let head: Vec<String> =
+        std::iter::once(first.to_owned()).chain(compared.all().map(|of| of.what.name().to_owned())).collect();
     let rows: Vec<Vec<String>> = std::iter::once(head).chain(rows(requirements, compared)).collect();
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let wide = |i: usize| {
@@ -101,11 +101,14 @@ pub(super) fn build(requirements: &Requirements, compared: &Comparison) -> Vec<S
         }
         (What::Tmd, Some(ssvi), _) if ssvi.goal < chosen.goal => {
             let has = format!("; an SSVI NES has {}", said(ssvi.goal));
-            match &compared.ssvi_certificate {
-                Some(certificate) => {
+            match (&compared.ssvi_certificate, compared.other_sign) {
+                (Some(_), Some(other)) if other > chosen.goal && requirements.driving.has_either_sign() => {
+                    format!("{has}, but {} with the other sign of the record", said(other))
+                }
+                (Some(certificate), _) => {
                     format!("{has}, but cannot be trusted: {}", legible(certificate.reason()))
                 }
-                None => {
+                (None, _) => {
                     let less = percent(1.0 - ssvi.goal / chosen.goal);
                     format!("{has}, {less} less, for which alone walls are not worth it")
                 }
@@ -187,6 +190,10 @@ pub(super) fn findings(requirements: &Requirements, compared: &Comparison) -> Ve
         let name = compared.chosen().map_or("", |chosen| chosen.what.name());
         lines.push(format!("How sure: the {name} is {words}."));
     }
+    if let (Some(other), Some(What::Ssvi)) = (compared.other_sign, compared.choice) {
+        let (name, other) = (compared.goal.name(), sized(other, compared.goal.unit()));
+        lines.push(format!("With the other sign of the shock or record it has {name} {other}."));
+    }
     if let Some(tried) = compared.tried {
         let tried = counted(tried as u64, "design");
         let walls = requirements.contact().map(|contact| contact.stiffness().map(|k| rounded(k, 3)));
@@ -238,7 +245,8 @@ fn costs(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
 
 /// Limits that are exceeded while the motion begins.
 fn from_rest(requirements: &Requirements, compared: &Comparison) -> Option<String> {
-    let chosen = compared.chosen()?;
+    // Under a shock or a record they hold from rest on.
+    let chosen = compared.chosen().filter(|chosen| !chosen.is_transient())?;
     let above = requirements.limits.set().filter_map(|limit| {
         let Limit::Of(measure) = limit else { return None };
         let (value, allowed) = (chosen.from_rest.get(measure).value, requirements.limits.get(limit)?);

@@ -39,7 +39,7 @@ pub struct Candidate {
     pub feasible: bool,
     /// Limits that it reaches to 1 %, or breaks, with what it has.
     pub binding: Vec<(Limit, f64)>,
-    /// Largest values once the motion is steady, each with its place.
+    /// Largest values once the motion is steady, each with its place; under a shock or a record, from the time on from which they count.
     pub steady: PerMeasure<Need>,
     /// The same from rest on.
     pub from_rest: PerMeasure<Need>,
@@ -76,7 +76,12 @@ impl Candidate {
         })
     }
 
-    /// The largest steady value of a quantity, in its SI unit.
+    /// Whether it stands under a shock or a record, so that no value has a frequency.
+    pub fn is_transient(&self) -> bool {
+        self.study.scene.forcing.is_transient()
+    }
+
+    /// The largest steady value of a quantity, or that under a shock or a record, in its SI unit.
     pub fn value(&self, measure: Measure) -> f64 {
         self.steady.get(measure).value
     }

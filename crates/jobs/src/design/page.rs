@@ -1,8 +1,9 @@
-//! The page of a design: the answer, all candidates over the band, the damper to scale, what was asked.
+//! The page of a design: the answer, all candidates over the band or in the run, the damper to scale, what was asked.
 
 use super::answer::{build, findings, rows};
 use super::candidate::{Candidate, What};
 use super::comparison::Comparison;
+use super::motion;
 use super::requirements::{Constraint, Requirements};
 use super::words::{asked, parameters, radians, sized, tuning};
 use crate::pages::made_by;
@@ -11,7 +12,7 @@ use rayon::prelude::*;
 use retune_model::{Bare, Coupled, Measure, PerMeasure, unit};
 use retune_optim::Limit;
 use retune_report::colour::{BLACK, BLUE, GREEN, GREY, VERMILION};
-use retune_report::document::{Block, Document};
+use retune_report::document::{Block, Document, Section};
 use retune_report::{
     Axis, Chart, Dash, Drawing, Key, Layer, Mark, Scale, Shape, Sheet, Stand, Stroke, Width, drawing,
 };
@@ -19,9 +20,13 @@ use retune_solver::{Also, Ask, extremes};
 use retune_study::rounded;
 
 pub(super) fn page(requirements: &Requirements, compared: &Comparison) -> Document {
+    let transient = compared.none.is_transient();
     let names: Vec<&str> = compared.all().map(|of| of.what.name()).collect();
     let head: Vec<String> =
-        std::iter::once("largest over the band, where").chain(names).map(str::to_owned).collect();
+        std::iter::once(if transient { "largest" } else { "largest over the band, where" })
+            .chain(names)
+            .map(str::to_owned)
+            .collect();
     let rows: Vec<Vec<String>> = rows(requirements, compared);
     let damper = |of: &Candidate| {
         let row = [of.what.name().to_owned(), parameters(of), tuning(of, requirements)];
@@ -47,7 +52,11 @@ pub(super) fn page(requirements: &Requirements, compared: &Comparison) -> Docume
         .collect();
     let mut compare = vec![
         Block::table(
-            "The largest value of each quantity in the steady motion, and its frequency",
+            if transient {
+                "The largest value of each quantity"
+            } else {
+                "The largest value of each quantity in the steady motion, and its frequency"
+            },
             head,
             rows,
         ),
@@ -79,15 +88,7 @@ pub(super) fn page(requirements: &Requirements, compared: &Comparison) -> Docume
         opening,
         sections: vec![
             ("compare", "Comparison", compare),
-            (
-                "band",
-                "Over the band",
-                vec![Block::figure(
-                    "band.svg",
-                    curves(requirements, compared),
-                    "Each quantity against frequency, once the motion is steady. Grey: what a limit forbids.",
-                )],
-            ),
+            over(requirements, compared),
             (
                 "damper",
                 "The damper to scale",
@@ -101,6 +102,18 @@ pub(super) fn page(requirements: &Requirements, compared: &Comparison) -> Docume
             ("files", "Files", vec![Block::files(&["comparison.csv", "design.json", "answer.txt"])]),
         ],
     }
+}
+
+/// The candidates over the band, or their motions under a shock or a record.
+fn over(requirements: &Requirements, compared: &Comparison) -> Section {
+    let Some(band) = requirements.driving.band() else {
+        let words = "The displacement of the structure with each candidate, from rest on.";
+        let figure = Block::figure("motion.svg", motion::picture(compared, line), words);
+        return ("motion", "The motion", vec![figure]);
+    };
+    let words = "Each quantity against frequency, once the motion is steady. Grey: what a limit forbids.";
+    let figure = Block::figure("band.svg", curves(requirements, compared, band), words);
+    ("band", "Over the band", vec![figure])
 }
 
 /// Frequencies of a curve in closed form, and of one of runs.
@@ -143,11 +156,10 @@ fn curve(of: &Candidate, [from, to]: [f64; 2]) -> Curve {
     (0..points).into_par_iter().map(value).collect()
 }
 
-fn curves(requirements: &Requirements, compared: &Comparison) -> Drawing {
+fn curves(requirements: &Requirements, compared: &Comparison, band: [f64; 2]) -> Drawing {
     let size = radians(requirements.frequencies);
-    let curves: Vec<(What, Curve)> =
-        compared.all().map(|of| (of.what, curve(of, requirements.band))).collect();
-    let ends = requirements.band.map(|end| end / size);
+    let curves: Vec<(What, Curve)> = compared.all().map(|of| (of.what, curve(of, band))).collect();
+    let ends = band.map(|end| end / size);
     let strikes = compared.dampers().any(Candidate::strikes);
     let shown = Measure::ALL.into_iter().filter(|measure| !measure.is_of_walls() || strikes);
     let chart = |measure: Measure| {

@@ -1,5 +1,7 @@
 //! From requirements as given to requirements in SI units: what is missing, contradicts itself or cannot be is refused with what to give.
 
+use super::driving::Driving;
+use super::history;
 use super::requirements::{Dampers, Requirements, Wall};
 use super::typed::{Specification, Typed};
 use super::words::radians;
@@ -25,8 +27,14 @@ fn checked(specification: &Specification) -> Result<Requirements, Error> {
     let [m1, k1] = structure(specification)?;
     let natural = (k1 / m1).sqrt();
     let c1 = damping(specification, 2.0 * m1 * natural)?;
-    let source = driving(specification)?;
-    let (band, hertz) = band(specification, natural)?;
+    let (driving, hertz) = match history::given(specification)? {
+        Some((forcing, after)) => (Driving::History { forcing, after }, by_f1(specification).unwrap_or("Hz")),
+        None => {
+            let amplitude = driving(specification)?;
+            let (band, hertz) = band(specification, natural)?;
+            (Driving::Harmonic { amplitude, band }, hertz)
+        }
+    };
     let mass = mass(specification, m1)?;
     let goal = goal(specification)?;
     let (limits, k2_max) = limits(specification)?;
@@ -42,8 +50,7 @@ fn checked(specification: &Specification) -> Result<Requirements, Error> {
         m1,
         k1,
         c1,
-        source,
-        band,
+        driving,
         frequencies: hertz,
         mass,
         goal,
@@ -178,7 +185,7 @@ fn driving(specification: &Specification) -> Result<(Parameter, f64), Error> {
     match given.as_slice() {
         [] => Err(missing(
             "--force",
-            "what moves the structure: --force 280N, --imbalance 0.02kg·m, --base 1mm or --base-acceleration 0.1g",
+            "what moves the structure: --force 280N, --imbalance 0.02kg·m, --base 1mm, --base-acceleration 0.1g, --shock half-sine,20ms,5g or --record FILE",
         )),
         [(name, typed, of)] => Ok((*of, positive(typed, name, of.units())?)),
         [(first, ..), (name, typed, _), ..] => {
@@ -188,13 +195,19 @@ fn driving(specification: &Specification) -> Result<(Parameter, f64), Error> {
     }
 }
 
+/// The unit of frequency in a text.
+fn told(text: &str) -> Option<&'static str> {
+    unit::FREQUENCY.iter().rev().find(|(name, _)| text.contains(name)).map(|(name, _)| *name)
+}
+
+/// The unit of the natural frequency.
+fn by_f1(specification: &Specification) -> Option<&'static str> {
+    specification.f1.as_ref().map(|typed| told(&typed.text).unwrap_or("Hz"))
+}
+
 /// The band, rad/s, and the unit in which frequencies are told.
 fn band(specification: &Specification, natural: f64) -> Result<([f64; 2], &'static str), Error> {
-    let told = |text: &str| {
-        let unit = unit::FREQUENCY.iter().rev().find(|(name, _)| text.contains(name));
-        unit.map(|(name, _)| *name)
-    };
-    let by_f1 = specification.f1.as_ref().map(|typed| told(&typed.text).unwrap_or("Hz"));
+    let by_f1 = by_f1(specification);
     let Some(typed) = &specification.band else {
         return Ok(([(1.0 - BAND) * natural, (1.0 + BAND) * natural], by_f1.unwrap_or("Hz")));
     };

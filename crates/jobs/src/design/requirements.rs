@@ -3,14 +3,16 @@
 //! Bounds and grids scale with the structure: stiffnesses and dampings with those of Den Hartog's damper, gaps with the amplitude of the
 //! structure without a damper.
 
+use super::driving::Driving;
 use crate::Error;
 use retune_model::{
-    Bare, Forcing, Measure, NonNegative, Parameter, Positive, Primary, Source, Surfaces, den_hartog,
+    Bare, Forcing, Measure, NonNegative, PerMeasure, Positive, Primary, Scene, Surfaces, den_hartog,
 };
 use retune_optim::{Limit, Limits};
+use retune_solver::{Also, Ask, Settings, Window, extremes};
 use retune_study::Study;
 use retune_study::read::from_text;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 
@@ -23,11 +25,9 @@ pub struct Requirements {
     pub k1: f64,
     /// Its damping, N·s/m.
     pub c1: f64,
-    /// What moves it: a parameter of a forcing, and its amplitude in the SI unit.
-    #[serde(flatten, serialize_with = "as_field")]
-    pub source: (Parameter, f64),
-    /// The angular frequencies of the forcing, rad/s.
-    pub band: [f64; 2],
+    /// What moves it.
+    #[serde(flatten)]
+    pub driving: Driving,
     /// The unit in which frequencies are told: Hz, rpm or rad/s.
     pub frequencies: &'static str,
     /// Mass of the damper, kg.
@@ -44,10 +44,6 @@ pub struct Requirements {
     pub dampers: Dampers,
     /// The walls of an SSVI NES.
     pub wall: Option<Wall>,
-}
-
-fn as_field<S: Serializer>(source: &(Parameter, f64), serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_map([(source.0.symbol(), source.1)])
 }
 
 /// The dampers that are compared.
@@ -168,29 +164,34 @@ impl Requirements {
         })
     }
 
-    /// What moves it, at the frequency of the band that is nearest to its own.
+    /// What moves it; a harmonic at the frequency of the band that is nearest to its own.
     fn forcing(&self) -> Result<Forcing, Error> {
-        let amplitude = NonNegative::new(self.source.1)?;
-        let source = match self.source.0 {
-            Parameter::Imbalance => Source::Imbalance(amplitude),
-            Parameter::Base => Source::Base(amplitude),
-            Parameter::BaseAcceleration => Source::BaseAcceleration(amplitude),
-            _ => Source::Force(amplitude),
-        };
-        let frequency = self.natural_frequency().clamp(self.band[0], self.band[1]);
-        Ok(Forcing { source, frequency: NonNegative::new(frequency)?, start: None })
+        self.driving.forcing(self.natural_frequency())
     }
 
-    /// Den Hartog's k2 (N/m) and c2 (N·s/m), the largest steady displacement (m) of the structure alone over the band, and the same of
-    /// the goal.
+    /// The run under a shock or a record; none under a harmonic.
+    pub(super) fn run(&self) -> Option<Window> {
+        self.driving.run(self.period())
+    }
+
+    /// Den Hartog's k2 (N/m) and c2 (N·s/m), the largest displacement (m) of the structure alone, steady over the band or in the run, and
+    /// the same of the goal.
     fn scales(&self) -> Result<([f64; 2], f64, f64), Error> {
-        let primary = self.primary(true)?;
-        let bare = Bare::new(&primary, &self.forcing()?);
-        let reach = bare.steady_max(Measure::Displacement, self.band).value;
-        Ok((den_hartog(&primary, self.mass), reach, bare.steady_max(self.goal, self.band).value))
+        let (primary, forcing) = (self.primary(true)?, self.forcing()?);
+        let formula = den_hartog(&primary, self.mass);
+        if let Some(run) = self.run() {
+            let scene = Scene { primary, forcing, damper: None };
+            let also = Some(Also { measures: PerMeasure::EVERY, from: 0.0 });
+            let ask = Ask { measure: self.goal, also, ..Ask::default() };
+            let found = extremes(&scene, run, &Settings::default(), ask)?;
+            return Ok((formula, found.reached.get(Measure::Displacement), found.largest.value));
+        }
+        let (bare, band) = (Bare::new(&primary, &forcing), self.driving.band().unwrap_or_default());
+        let reach = bare.steady_max(Measure::Displacement, band).value;
+        Ok((formula, reach, bare.steady_max(self.goal, band).value))
     }
 
-    /// The study of the TMD: steady, in closed form, k2 and c2 free, without walls.
+    /// The study of the TMD, k2 and c2 free, without walls: steady, in closed form, or the run under a shock or a record.
     pub fn tmd(&self) -> Result<Study, Error> {
         let ([k2, c2], _, size) = self.scales()?;
         let most = self.k2_max.unwrap_or(20.0 * k2);
@@ -210,7 +211,7 @@ impl Requirements {
         let kept: Vec<Limit> = limits.set().filter(|limit| !of_walls(limit)).collect();
         let optimize = json!({
             "vary": ["k2", "c2"],
-            "objective": { "quantity": self.goal, "omega": self.omega(), "response": "steady" },
+            "objective": self.objective(true),
             "bounds": { "k2": [0, most], "c2": [0, 200.0 * c2] },
             "limits": kept.into_iter().map(|limit| (limit.name().to_owned(), json!(limits.get(limit)))).collect::<serde_json::Map<_, _>>(),
             "surf": { "k2": axis(0.05 * k2.min(most), (4.0 * k2).min(most)), "c2": axis(0.05 * c2, 20.0 * c2) },
@@ -226,12 +227,12 @@ impl Requirements {
         let axis = |from: f64, to: f64, scale: &str, points: u32| json!({ "from": from, "to": to, "points": points, "scale": scale });
         let stiffest = k2.min(most);
         let mut limits = json!(self.limits);
-        if !self.limits.is_empty() {
+        if !self.limits.is_empty() && self.run().is_none() {
             limits["from"] = json!(PASSED * self.period());
         }
         let optimize = json!({
             "vary": ["k2", "c2", "D", "C"],
-            "objective": { "quantity": self.goal, "omega": self.omega() },
+            "objective": self.objective(false),
             "bounds": { "k2": [0, most], "c2": [0, 50.0 * c2], "D": [0, 4.0 * reach], "C": [0, 8.0 * reach] },
             "limits": limits,
             "surf": {
@@ -250,8 +251,16 @@ impl Requirements {
         self.study("ssvi", damper, optimize)
     }
 
-    fn omega(&self) -> Value {
-        json!({ "from": self.band[0], "to": self.band[1], "samples": 31 })
+    /// The goal over the band, or in the run under a shock or a record.
+    fn objective(&self, steady: bool) -> Value {
+        let mut objective = json!({ "quantity": self.goal });
+        if let Some([from, to]) = self.driving.band() {
+            objective["omega"] = json!({ "from": from, "to": to, "samples": 31 });
+            if steady {
+                objective["response"] = json!("steady");
+            }
+        }
+        objective
     }
 
     /// The natural period, s.
@@ -269,12 +278,14 @@ impl Requirements {
         Ok(Surfaces { radius, young_1: steel, young_2: soft, young_3: steel, young_4: soft, ..paper })
     }
 
-    /// A study of 100 periods of the structure, the first half of which passes before maxima are taken.
+    /// A study of 100 periods of the structure, the first half of which passes before maxima are taken, or of a shock or a record.
     fn study(&self, name: &str, damper: Value, optimize: Value) -> Result<Study, Error> {
+        let steady = Window { from: PASSED * self.period(), to: PERIODS * self.period() };
+        let Window { from, to } = self.run().unwrap_or(steady);
         let study = json!({
             "name": name,
             "scene": { "primary": self.primary(false)?, "forcing": self.forcing()?, "damper": damper },
-            "window": { "t0": PASSED * self.period(), "T": PERIODS * self.period() },
+            "window": { "t0": from, "T": to },
             "optimize": optimize
         });
         Ok(from_text(&study.to_string(), "design")?)

@@ -1,16 +1,18 @@
 //! The best SSVI NES near what is known: good designs of the studies of this repository, in dimensionless form, and the best TMD with its
-//! walls within reach. Those that can come near the TMD are told by a few runs each, and descents go on from the best.
+//! walls within reach. Those that can come near the TMD are told by a few runs each, and descents go on from the best; under a shock or a
+//! record, of which there are no derivatives, a simplex does.
 //!
 //! It is no global search: `retune optimize` of the study that is written makes one. It takes seconds.
 
 use super::candidate::Candidate;
+use super::simplex::simplex;
 use super::words::sized;
 use crate::tune::descent::descend;
 use crate::tune::objective::{coarse, kept, searched};
 use crate::{Error, Observer, Progress};
 use rayon::prelude::*;
 use retune_model::{Measure, Scene};
-use retune_optim::{Bounds, INFEASIBLE, Parameter};
+use retune_optim::{Bounds, INFEASIBLE, Parameter, Point};
 use retune_store::Journal;
 use retune_study::{Search, Study};
 use std::sync::{Mutex, PoisonError};
@@ -155,9 +157,14 @@ pub(super) fn best(
     }
     let bar = Told::new(watch.progress("SSVI NES", worth.len() as u64), study);
     let descent = |(_, x): &&Start| {
-        let foot = descend(&objective, &search, x, journal, &format!("{stage} descent"));
-        bar.done(foot.end.value);
-        (foot.end.value, foot.end.x)
+        let stage = format!("{stage} descent");
+        let Point { x, value } = if study.scene.forcing.is_transient() {
+            simplex(kept(&objective, journal, &stage, || ()), &search, x)
+        } else {
+            descend(&objective, &search, x, journal, &stage).end
+        };
+        bar.done(value);
+        (value, x)
     };
     let mut ends: Vec<(f64, Vec<f64>)> = worth.par_iter().map(descent).collect();
     bar.finish();

@@ -11,30 +11,21 @@ use retune_report::table::{Cell, Table};
 use retune_study::Study;
 use std::path::Path;
 
-/// A column for each quantity and its frequency.
-fn names() -> Vec<String> {
-    Measure::ALL
-        .iter()
-        .flat_map(|measure| [measure.name().to_owned(), format!("omega_{}", measure.name())])
-        .collect()
-}
-
-/// What a candidate has of each quantity, and where.
-fn numbers(of: &Candidate) -> Vec<f64> {
-    Measure::ALL
-        .iter()
-        .flat_map(|measure| {
-            let need = of.steady.get(*measure);
-            [need.value, need.omega]
-        })
-        .collect()
+/// What a candidate has of each quantity and, where there are frequencies, where: each with its column.
+fn numbers(of: &Candidate) -> Vec<(String, f64)> {
+    let one = |measure: &Measure| {
+        let (name, need) = (measure.name(), of.steady.get(*measure));
+        let omega = (!of.is_transient()).then(|| (format!("omega_{name}"), need.omega));
+        std::iter::once((name.to_owned(), need.value)).chain(omega)
+    };
+    Measure::ALL.iter().flat_map(one).collect()
 }
 
 /// All candidates under all limits, and the dampers without each of them.
 pub(super) fn table(compared: &Comparison) -> Table {
-    let measures = names();
+    let measures = numbers(&compared.none);
     let head = ["limits", "damper", "m2", "k2", "c2", "D", "C"];
-    let all: Vec<&str> = head.into_iter().chain(measures.iter().map(String::as_str)).collect();
+    let all: Vec<&str> = head.into_iter().chain(measures.iter().map(|(name, _)| name.as_str())).collect();
     let mut table = columns::table(&all);
     let mut push = |limits: String, of: &Candidate| {
         let damper = of.damper();
@@ -42,7 +33,10 @@ pub(super) fn table(compared: &Comparison) -> Table {
             |parameter: Parameter| damper.and_then(|damper| parameter.of_damper(&damper)).unwrap_or(f64::NAN);
         let design = Parameter::PAPER.map(|parameter| Cell::from(own(parameter)));
         let first = cells![limits, of.what.name(), own(Parameter::M2)];
-        table.push([first, design.to_vec(), numbers(of).into_iter().map(Cell::from).collect()].concat());
+        table.push(
+            [first, design.to_vec(), numbers(of).into_iter().map(|(_, value)| value.into()).collect()]
+                .concat(),
+        );
     };
     compared.all().for_each(|of| push("all".to_owned(), of));
     for cost in &compared.costs {
@@ -67,6 +61,6 @@ pub(super) fn again(place: &Path, _name: &str) -> Result<Source, Error> {
         };
         let of = if what == What::Ssvi.name() { What::Ssvi } else { What::Tmd };
         let found = Candidate::new(of, &Study { scene, ..study.clone() }).ok()?;
-        Some(names().into_iter().zip(numbers(&found)).collect())
+        Some(numbers(&found))
     }))
 }

@@ -1,11 +1,13 @@
 //! The best TMD: the least of a closed form over spring and dashpot, by the descents of its peaks from the best of a small grid and from
-//! the formulas of textbooks. It takes milliseconds.
+//! the formulas of textbooks. It takes milliseconds; under a shock or a record, whose runs are followed in time, seconds.
 
 use super::requirements::Requirements;
+use super::simplex::simplex;
 use crate::Error;
 use crate::tune::objective::searched;
 use rayon::prelude::*;
 use retune_model::{Measure, Parameter, Primary, den_hartog, nishihara_asami, warburton};
+use retune_optim::Point;
 use retune_study::Study;
 
 /// Points of the grid along k2 and c2, from and to these multiples of Den Hartog's.
@@ -30,13 +32,14 @@ impl Formula {
     /// without damping of the structure, and Den Hartog's. Warburton's where it is the displacement under an imbalance, or the
     /// acceleration under a constant force. Else Den Hartog's.
     pub fn all(requirements: &Requirements, primary: &Primary) -> Vec<Self> {
-        let imbalance = requirements.source.0 == Parameter::Imbalance;
-        let accelerated = requirements.source.0 == Parameter::BaseAcceleration;
+        let driving = requirements.driving.parameter();
+        let imbalance = driving == Some(Parameter::Imbalance);
+        let accelerated = driving == Some(Parameter::BaseAcceleration);
         let of_acceleration = requirements.goal == Measure::Acceleration;
         let squared = !accelerated && imbalance != of_acceleration;
         let exact = match requirements.goal {
             Measure::Displacement => !imbalance && !accelerated,
-            Measure::GroundForce => requirements.source.0 == Parameter::P,
+            Measure::GroundForce => driving == Some(Parameter::P),
             _ => accelerated && of_acceleration,
         };
         let of = |name, formula: fn(&Primary, f64) -> [f64; 2]| {
@@ -45,6 +48,8 @@ impl Formula {
         };
         let den_hartog = || of("Den Hartog's formula", den_hartog);
         match (squared, exact) {
+            // Under a shock or a record none is for the goal: the best known one stands beside.
+            _ if driving.is_none() => vec![den_hartog()],
             (true, _) => vec![of("Warburton's formula", warburton)],
             (_, true) => vec![of("Nishihara and Asami's formula", nishihara_asami), den_hartog()],
             _ => vec![den_hartog()],
@@ -52,7 +57,8 @@ impl Formula {
     }
 }
 
-/// The best `[k2, c2]` of a TMD study under its limits: of designs that break some, the one that breaks them by the least.
+/// The best `[k2, c2]` of a TMD study under its limits: of designs that break some, the one that breaks them by the least. Under a shock or
+/// a record, of which there are no derivatives, a simplex takes the place of descents.
 pub(super) fn best(study: &Study, formulas: &[Formula]) -> Result<[f64; 2], Error> {
     let search = study.search().map_err(Error::rule(study))?;
     let objective = searched(study, &search, &search.variables);
@@ -77,7 +83,13 @@ pub(super) fn best(study: &Study, formulas: &[Formula]) -> Result<[f64; 2], Erro
         .chain(formulas.iter().map(|formula| within([formula.k2, formula.c2])))
         .chain(grid.iter().take(BEST).map(|(_, x)| *x))
         .collect();
-    let ends: Vec<_> = starts.par_iter().map(|start| objective.descend(bounds, start).end).collect();
+    let down = |start: &[f64; 2]| {
+        if study.scene.forcing.is_transient() {
+            return simplex(|x, cutoff| objective.value(x, cutoff), &search, start);
+        }
+        objective.descend(bounds, start).end
+    };
+    let ends: Vec<Point> = starts.par_iter().map(down).collect();
     let best = ends.into_iter().min_by(|a, b| a.value.total_cmp(&b.value));
     Ok(best.and_then(|end| <[f64; 2]>::try_from(end.x).ok()).unwrap_or(scales))
 }

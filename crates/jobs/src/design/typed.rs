@@ -61,6 +61,12 @@ pub struct Specification {
     pub base: Option<Typed>,
     /// Amplitude of the acceleration of a moving base.
     pub base_acceleration: Option<Typed>,
+    /// A shock, `half-sine,20ms,5g`.
+    pub shock: Option<Typed>,
+    /// A file with a record, `quake.csv,unit=g`.
+    pub record: Option<Typed>,
+    /// From when on largest values count under a shock or a record; by default from its beginning.
+    pub after: Option<Typed>,
     /// The frequencies of the forcing; by default those within 10 % of the natural frequency.
     pub band: Option<Typed>,
     /// Mass of the damper, or its share of the structure's.
@@ -115,8 +121,17 @@ impl Specification {
         if replaces(&[&other.c1, &other.zeta]) {
             (self.c1, self.zeta) = (None, None);
         }
-        if replaces(&[&other.force, &other.imbalance, &other.base, &other.base_acceleration]) {
+        let harmonic = replaces(&[&other.force, &other.imbalance, &other.base, &other.base_acceleration]);
+        let in_time = replaces(&[&other.shock, &other.record]);
+        if harmonic || in_time {
             (self.force, self.imbalance, self.base, self.base_acceleration) = (None, None, None, None);
+            (self.shock, self.record) = (None, None);
+        }
+        if harmonic {
+            self.after = None;
+        }
+        if in_time {
+            self.band = None;
         }
         let limits = std::mem::take(&mut self.limits);
         let limit = [std::mem::take(&mut self.limit), other.limit.clone()].concat();
@@ -131,7 +146,7 @@ impl Specification {
     }
 
     /// The fields that hold one value each.
-    fn fields(&mut self) -> [&mut Option<Typed>; 17] {
+    fn fields(&mut self) -> [&mut Option<Typed>; 20] {
         [
             &mut self.m1,
             &mut self.k1,
@@ -142,6 +157,9 @@ impl Specification {
             &mut self.imbalance,
             &mut self.base,
             &mut self.base_acceleration,
+            &mut self.shock,
+            &mut self.record,
+            &mut self.after,
             &mut self.band,
             &mut self.mass,
             &mut self.goal,

@@ -1,7 +1,9 @@
 //! Numbers of a design as a person reads them.
 
 use super::candidate::Candidate;
+use super::driving::Driving;
 use super::requirements::{Constraint, Requirements};
+use crate::describe::forced;
 use retune_model::{Measure, Parameter, unit};
 use retune_study::rounded;
 use std::f64::consts::TAU;
@@ -108,15 +110,7 @@ pub(super) fn question(requirements: &Requirements) -> Vec<String> {
 pub(super) fn asked(requirements: &Requirements) -> Vec<String> {
     let own = natural(requirements);
     let critical = 2.0 * requirements.m1 * requirements.natural_frequency();
-    let driving = match requirements.source {
-        (Parameter::Imbalance, imbalance) => format!("an imbalance of {} kg·m", rounded(imbalance, 4)),
-        (Parameter::Base, base) => format!("a base that moves by {}", sized(base, "m")),
-        (Parameter::BaseAcceleration, a) => format!("a base that is accelerated by {}", sized(a, "m/s²")),
-        (_, force) => format!("a force of {}", sized(force, "N")),
-    };
-    let unit = requirements.frequencies;
-    let [from, to] = requirements.band.map(|end| frequency(end, unit));
-    let from = from.trim_end_matches(unit).trim_end();
+    let driving = moved(requirements);
     let limits: Vec<String> =
         requirements.constraints().into_iter().map(|constraint| limit(requirements, constraint)).collect();
     let limits = if limits.is_empty() { String::new() } else { format!(", {}", limits.join(", ")) };
@@ -124,9 +118,30 @@ pub(super) fn asked(requirements: &Requirements) -> Vec<String> {
     let (damping, share, goal) = (percent(c1 / critical), percent(mass / m1), goal.name());
     let ([m1, mass], k1) = ([*m1, *mass].map(|mass| sized(mass, "kg")), sized(*k1, "N/m"));
     vec![
-        format!("Structure: {m1} on {k1}, {own}, damping {damping}; {driving}, {from} to {to}."),
+        format!("Structure: {m1} on {k1}, {own}, damping {damping}; {driving}."),
         format!("Asked for: a damper of {mass} ({share}) with the least {goal}{limits}."),
     ]
+}
+
+/// What moves it.
+fn moved(requirements: &Requirements) -> String {
+    let (amplitude, band) = match &requirements.driving {
+        Driving::Harmonic { amplitude, band } => (*amplitude, *band),
+        Driving::History { forcing, after } => {
+            let end = requirements.run().map_or(f64::NAN, |run| run.to);
+            let (from, end) = (rounded(*after, 4), rounded(end, 4));
+            return format!("{}. Largest values from {from} s to {end} s", forced(forcing));
+        }
+    };
+    let driving = match amplitude {
+        (Parameter::Imbalance, imbalance) => format!("an imbalance of {} kg·m", rounded(imbalance, 4)),
+        (Parameter::Base, base) => format!("a base that moves by {}", sized(base, "m")),
+        (Parameter::BaseAcceleration, a) => format!("a base that is accelerated by {}", sized(a, "m/s²")),
+        (_, force) => format!("a force of {}", sized(force, "N")),
+    };
+    let unit = requirements.frequencies;
+    let [from, to] = band.map(|end| frequency(end, unit));
+    format!("{driving}, {} to {to}", from.trim_end_matches(unit).trim_end())
 }
 
 pub(super) fn limit(requirements: &Requirements, constraint: Constraint) -> String {

@@ -1,6 +1,6 @@
 //! `design`: from a structure to two dampers, on structures of very different size.
 
-use retune_jobs::design::{Requirements, Specification, Typed, design};
+use retune_jobs::design::{Driving, Requirements, Specification, Typed, design};
 use retune_jobs::tune::optimize;
 use retune_jobs::{Error, Request, Silent};
 use retune_model::{Coupled, Design, Measure, NonNegative, Parameter};
@@ -16,6 +16,14 @@ use std::path::Path;
 
 fn asked(specification: Value) -> Specification {
     serde_json::from_value(specification).expect("specification")
+}
+
+/// The amplitude and the band of a harmonic.
+fn harmonic(requirements: &Requirements) -> ((Parameter, f64), [f64; 2]) {
+    match requirements.driving {
+        Driving::Harmonic { amplitude, band } => (amplitude, band),
+        Driving::History { .. } => panic!("a harmonic"),
+    }
 }
 
 /// A structure of 500 kg, a machine foundation of 5 t at 12 Hz, a bench model of 2 kg at 25 Hz.
@@ -57,6 +65,7 @@ fn largest(answer: &Value, candidate: usize, name: &str) -> f64 {
 #[test]
 fn reference_the_tmd_of_a_design_is_the_optimum_of_the_closed_form() {
     for requirements in structures() {
+        let ((_, force), band) = harmonic(&requirements);
         let study = good(requirements.tmd());
         let damper = study.scene.damper.expect("a damper");
         let worst = |x: &[f64], _: f64| {
@@ -64,15 +73,12 @@ fn reference_the_tmd_of_a_design_is_the_optimum_of_the_closed_form() {
             let [k2, c2] = [x[0], x[1]].map(NonNegative::new);
             let (Ok(k2), Ok(c2)) = (k2, c2) else { return f64::INFINITY };
             (damper.stiffness, damper.damping) = (k2, c2);
-            Coupled::new(&study.scene.primary, &study.scene.forcing, &damper)
-                .steady_e1_max(requirements.band)
-                .value
+            Coupled::new(&study.scene.primary, &study.scene.forcing, &damper).steady_e1_max(band).value
         };
         let start = [damper.stiffness.get(), damper.damping.get()];
         let options = Options { scaling: Scaling::Start, tol_x: 1e-9, tol_fun: 1e-15, ..Options::default() };
         let own = minimize(worst, &start, options, |_| ControlFlow::Continue(())).expect("an optimum");
-        let Requirements { m1, k1, c1, band, mass, .. } = requirements.clone();
-        let (_, force) = requirements.source;
+        let Requirements { m1, k1, c1, mass, .. } = requirements.clone();
         let found = with_tmd(json!({ "m1": m1, "k1": k1, "c1": c1, "P": force, "band": band, "mass": mass }));
         let e1_max = largest(&found, 1, "E1max");
         assert!((e1_max / own.value - 1.0).abs() < 1e-8, "{e1_max} {} {requirements:?}", own.value);
@@ -167,7 +173,7 @@ fn exact_the_values_of_the_comparison_are_amplitudes_of_the_closed_form() {
             (told["value"].as_f64().expect("a value"), told["omega"].as_f64().expect("a frequency"));
         let at = |omega: f64| system.steady(omega).largest(system.bare(), omega, measure);
         assert!((own - at(omega)).abs() <= 1e-9 * own, "{measure:?}: {own} {}", at(omega));
-        let [from, to] = requirements.band;
+        let (_, [from, to]) = harmonic(&requirements);
         for i in 0..=1000 {
             let other = at(from + (to - from) * f64::from(i) * 1e-3);
             assert!(other <= (1.0 + 1e-5) * own, "{measure:?}: {other} {own}");
@@ -192,11 +198,14 @@ fn exact_requirements_are_the_same_in_every_unit() {
         json!({ "k1": "6316.5468 N/mm", "f1": "2 Hz", "zeta": "0.5 %", "force": 280, "mass": "2 %" }),
     ] {
         let other = good(asked(other).requirements());
-        let numbers = |of: &Requirements| [of.m1, of.k1, of.c1, of.band[0], of.band[1], of.mass];
+        let numbers = |of: &Requirements| {
+            let (_, [from, to]) = harmonic(of);
+            [of.m1, of.k1, of.c1, from, to, of.mass]
+        };
         for (own, other) in numbers(&one).into_iter().zip(numbers(&other)) {
             assert!((other / own - 1.0).abs() < 1e-6, "{own} {other}");
         }
-        assert_eq!(one.source, other.source);
+        assert_eq!(harmonic(&one).0, harmonic(&other).0);
     }
 }
 
@@ -310,7 +319,7 @@ fn reference_the_ssvi_nes_of_a_design_has_the_energy_that_other_methods_find() {
         let found_scene = study.scene_at(&design).expect("a damper");
         // The damper that was found, and the one where the search starts, which strikes its walls.
         let worst = found["objective"]["worst_omega"].as_f64().expect("a number");
-        let omegas = [requirements.band[0], worst, requirements.natural_frequency()];
+        let omegas = [harmonic(&requirements).1[0], worst, requirements.natural_frequency()];
         let mut impacts = 0;
         for (mut scene, omega) in
             [found_scene, study.scene].into_iter().flat_map(|scene| omegas.map(|omega| (scene, omega)))

@@ -43,6 +43,27 @@ fn with_record(study: &Value) -> Desk {
     desk
 }
 
+/// After the last sample nothing acts, and a study says so where its run goes on.
+#[test]
+fn contract_a_record_that_ends_before_the_run_is_told() {
+    let mut study = study();
+    study["scene"]["forcing"] = json!({ "record": "a.csv", "of": "base acceleration" });
+    for (end, told) in
+        [(15, Some("the record ends at 4 s; from there to T = 15 s the motion is free")), (4, None)]
+    {
+        study["window"]["T"] = json!(end);
+        let desk = with_record(&study);
+        let read = retune_study::read(&desk.path("study.json")).expect("a study");
+        assert_eq!(read.transient().as_deref(), told);
+        assert_eq!(
+            told.is_some_and(|told| retune_jobs::describe::study(&read).contains(told)),
+            told.is_some()
+        );
+        let simulated = json!(good(retune_jobs::simulate::simulate(&read, None)));
+        assert_eq!(simulated["transient"].as_str(), told);
+    }
+}
+
 /// A certificate has the values under the other sign, with every second sample and with other seeds; a resolved study needs no file.
 #[test]
 fn exact_a_certificate_has_the_values_under_other_records() {

@@ -76,7 +76,8 @@ fn invariant_a_random_force_has_its_spectrum() {
     let density = [0.0, 3.0, 1.0].map(not_negative).to_vec();
     let variance = 0.5 * 2.0 * 3.0 + 0.5 * 5.0 * 4.0;
     let draw = |seed, duration| {
-        let spectrum = Spectrum { omega: omega.clone(), density: density.clone(), seed };
+        let spectrum =
+            Spectrum { omega: omega.clone(), density: density.clone(), seed, white: None, to: None };
         Made::new(recipe(Form::Spectrum(spectrum), duration)).expect("samples")
     };
     assert!(draw(1, 200.0) == draw(1, 200.0) && draw(1, 200.0) != draw(2, 200.0));
@@ -107,7 +108,13 @@ fn contract_what_makes_no_force_says_why() {
     };
     let spectrum = |omega: &[f64], density: &[f64]| {
         let numbers = |all: &[f64]| all.iter().map(|&one| not_negative(one)).collect();
-        Form::Spectrum(Spectrum { omega: numbers(omega), density: numbers(density), seed: 0 })
+        Form::Spectrum(Spectrum {
+            omega: numbers(omega),
+            density: numbers(density),
+            seed: 0,
+            white: None,
+            to: None,
+        })
     };
     for table in [spectrum(&[1.0], &[1.0]), spectrum(&[1.0, 2.0], &[1.0]), spectrum(&[2.0, 2.0], &[1.0, 1.0])]
     {

@@ -9,4 +9,5 @@ mod energies;
 mod histories;
 mod mode;
 mod regularised;
+mod stationary;
 mod steady;

@@ -130,6 +130,7 @@ impl Slopes<'_> {
         let Place { scene, phase, .. } = &place;
         let ask = Ask { measure: term.quantity, phase: *phase, ..Ask::default() };
         let by = match (term.response, &scene.damper) {
+            _ if term.is_stationary() => return Err(Unusable::NoDerivatives),
             (Response::Steady, Some(damper)) => {
                 let system = Coupled::new(&scene.primary, &scene.forcing, damper);
                 let omega = scene.forcing.frequency.get();
@@ -138,7 +139,7 @@ impl Slopes<'_> {
             (Response::Settled, _) => {
                 settled_by(scene, window, term.settle, self.settings, ask, self.variables)?
             }
-            (Response::Motions, _) => return Err(Unusable::NoDerivatives),
+            (Response::Motions, _) | (Response::Steady, None) => return Err(Unusable::NoDerivatives),
             _ => extremes_by(scene, window, self.settings, ask, self.variables)?,
         };
         Ok(by.iter().zip(shares).map(|(by, share)| by * share).collect())

@@ -59,7 +59,7 @@ impl Limit {
     /// Its place in [`Self::ALL`].
     const fn place(self) -> usize {
         match self {
-            Self::Of(measure) => measure as usize,
+            Self::Of(measure) => measure.index(),
             Self::Cavity => Measure::ALL.len(),
         }
     }

@@ -64,7 +64,13 @@ impl Goal {
         proceed: Proceed<'_>,
     ) -> Result<Needs, Unusable> {
         const ALL: PerMeasure<f64> = PerMeasure::all(f64::NEG_INFINITY);
-        let goal = Self { limits: Limits::default(), peaks: true, ..self.clone() };
+        let mut goal = Self { limits: Limits::default(), peaks: true, ..self.clone() };
+        // A stationary random motion has no largest values: those of the draw in the window are told.
+        goal.objective.for_each_term(&mut |term| {
+            if term.is_stationary() {
+                (term.response, term.quantity) = (Response::Window, term.quantity.of_run());
+            }
+        });
         let own = goal.largest(scene, settings, (None, ALL), proceed)?;
         let (mut whole, end) = (goal, self.window.to);
         whole.window.from = 0.0;

@@ -21,11 +21,12 @@ const MOST: usize = 12;
 const APART: f64 = 1e-5;
 
 impl Goal {
-    /// Whether its value is the largest of peaks, each with derivatives by [`Self::pieces`]: that of no sum, of no ensemble, and of no motion
+    /// Whether its value is the largest of peaks, each with derivatives by [`Self::pieces`]: that of no sum, of no ensemble, of no random and of no motion
     /// but those from rest and the steady one.
     pub fn has_pieces(&self) -> bool {
         let Objective { sum, ensemble, response, records, .. } = &self.objective;
         sum.is_empty()
+            && !self.objective.is_stationary()
             && records.is_empty()
             && ensemble.is_none()
             && matches!(response, Response::Window | Response::Steady)

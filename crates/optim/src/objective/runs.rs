@@ -5,7 +5,9 @@ use super::limits::{Limit, Limits};
 use super::motions::{Outcome, Sought, largest_motion};
 use super::spec::{Goal, Objective, Response};
 use super::unusable::Unusable;
-use retune_model::{Bare, Coupled, Measure, NonNegative, Parameter, PerMeasure, Scene, Worst};
+use retune_model::{
+    Bare, Coupled, Measure, NonNegative, Parameter, PerMeasure, Rms, Scene, Stationary, Worst,
+};
 use retune_solver::{Also, Ask, Settings, Window, extremes, settled};
 use std::sync::{Mutex, PoisonError};
 
@@ -134,12 +136,22 @@ impl<'a> Runs<'a> {
         self.see_each(scene, number, largest, &also, settled)
     }
 
+    /// The mean of a stationary random motion under the spectrum of a scene.
+    fn stationary(&self, scene: &Scene, rms: Rms, term: usize) -> Result<Largest, Unusable> {
+        let found = Stationary::new(scene, self.settings.rtol).ok_or(Unusable::NotStationary)?;
+        let quantity = Worst { value: found.get(rms), frequency: 0.0 };
+        self.see_each(scene, term, quantity, &[], true)
+    }
+
     pub(super) fn steady(
         &self,
         scene: &Scene,
         band: [f64; 2],
         (number, term): Numbered,
     ) -> Result<Largest, Unusable> {
+        if let Measure::Stationary(rms) = term.quantity {
+            return self.stationary(scene, rms, number);
+        }
         let Scene { primary, forcing, damper } = scene;
         let bare = Bare::new(primary, forcing);
         let coupled = damper.map(|damper| (Coupled::new(primary, forcing, &damper), damper));

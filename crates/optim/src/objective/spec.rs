@@ -239,6 +239,11 @@ impl Objective {
         }
     }
 
+    /// Whether it is that of a stationary random motion.
+    pub fn is_stationary(&self) -> bool {
+        matches!(self.quantity(), Measure::Stationary(_))
+    }
+
     /// Whether every part of it is steady, so that no window and no solver matter.
     pub fn is_steady(&self) -> bool {
         self.terms().iter().all(|(_, term)| term.response == Response::Steady)

@@ -36,6 +36,11 @@ pub enum Unusable {
     /// Derivatives of what other starts than rest lead to were asked for.
     #[error("the response \"motions\" has no derivatives here: give the response \"window\" or \"settled\"")]
     NoDerivatives,
+    /// A random motion without a spread of its own.
+    #[error(
+        "its random motion never becomes stationary, or spreads without bound: give the structure damping, and the damper a spring"
+    )]
+    NotStationary,
     /// The steady motion reaches a wall, so that it is not linear.
     #[error(
         "the damper reaches a wall: its steady stroke at omega = {omega} rad/s is {stroke} m, of which D and C leave {room} m; \

@@ -72,7 +72,10 @@ def design(
     imbalance: float | str | None = None,
     base: float | str | None = None,
     base_acceleration: float | str | None = None,
-    band: tuple[float, float] | str,
+    band: tuple[float, float] | str | None = None,
+    shock: str | None = None,
+    record: str | None = None,
+    after: float | str | None = None,
     mass: float | str,
     stroke: float | str | None = None,
     k2_max: float | str | None = None,
@@ -86,7 +89,8 @@ def design(
     """Designs a damper for a structure, as `retune design` does: the better of a TMD and an SSVI NES, what each limit costs, how sure that is.
 
     What moves it is one of ``P``, the amplitude of a force (N), ``imbalance`` (kg m), ``base``, the amplitude of a moving base (m), and
-    ``base_acceleration`` (m/s²). ``band`` is the range of angular frequencies (rad/s), ``mass`` that of the damper (kg),
+    ``base_acceleration`` (m/s²), within ``band``, the range of angular frequencies (rad/s); or a ``shock``, "half-sine,20ms,5g", or a
+    ``record``, "quake.csv,unit=g", of which largest values count from ``after`` (s) on. ``mass`` is that of the damper (kg),
     ``stroke`` the largest deflection of its spring (m), ``k2_max`` the largest stiffness of its spring (N/m), ``k1_error`` the share by
     which the stiffness of the structure may be off. ``goal`` is what is made small, ``limits`` has the largest value allowed of other
     quantities, ``damper`` is "tmd", "ssvi" or "both", ``wall`` has the damper's surfaces ("R=20mm,E=5MPa").
@@ -99,6 +103,9 @@ def design(
         "base": base,
         "base_acceleration": base_acceleration,
         "band": band,
+        "shock": shock,
+        "record": record,
+        "after": after,
         "mass": mass,
         "stroke": stroke,
         "k2_max": k2_max,

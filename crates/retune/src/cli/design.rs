@@ -45,6 +45,15 @@ pub struct Design {
     /// Amplitude of the acceleration of a moving base, the same at every frequency, e.g. 0.1g
     #[arg(long, value_name = "ACCELERATION")]
     pub base_acceleration: Option<Typed>,
+    /// A shock: its shape (half-sine, versed-sine, rectangle), how long it lasts, and its peak, an acceleration of the base or a force: half-sine,20ms,5g or rectangle,0.1s,300N
+    #[arg(long, value_name = "SHAPE,DURATION,PEAK", allow_hyphen_values = true)]
+    pub shock: Option<Typed>,
+    /// A record: a CSV or AT2 file, then what is not of=base-acceleration, unit=m/s², column=2, scale=1, e.g. quake.csv,unit=g
+    #[arg(long, value_name = "FILE")]
+    pub record: Option<Typed>,
+    /// From when on largest values count under a shock or a record, e.g. 5s: what a shock leaves then [default: the whole run]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    pub after: Option<Typed>,
     /// The frequencies of the forcing, e.g. 1.8Hz..2.2Hz, 1500rpm±5%, ±10% [default: within 10 % of the natural frequency]
     #[arg(long, num_args = 1..=2, value_name = "BAND")]
     pub band: Vec<String>,
@@ -81,6 +90,8 @@ const EXAMPLES: &str = "\
 Examples:
   retune design --m1 40t --f1 2Hz --zeta 0.5% --force 280N --mass 2%
   retune design --m1 2t --f1 24.5Hz --zeta 1% --imbalance 0.02kg·m --band 1350rpm..1650rpm --mass 60kg --limit stroke=0.5mm
+  retune design --m1 2t --f1 3Hz --zeta 1% --shock half-sine,20ms,5g --after 3s --mass 5%
+  retune design --m1 40t --f1 1Hz --zeta 1% --record studies/records/quake.csv --goal x1max --mass 5%
   retune design --modes studies/modes/building.csv --force 2kN --mass 1%
   retune design studies/examples/building.json --limit stroke=250mm";
 
@@ -91,7 +102,7 @@ impl Design {
         let Self {
             m1, k1, f1, c1, zeta, force, imbalance, base, base_acceleration, mass, goal, limit, ..
         } = self;
-        let Self { stroke, k2_max, k1_error, damper, wall, .. } = self;
+        let Self { stroke, k2_max, k1_error, damper, wall, shock, record, after, .. } = self;
         Specification {
             m1: m1.clone(),
             k1: k1.clone(),
@@ -102,6 +113,9 @@ impl Design {
             imbalance: imbalance.clone(),
             base: base.clone(),
             base_acceleration: base_acceleration.clone(),
+            shock: shock.clone(),
+            record: record.clone(),
+            after: after.clone(),
             band,
             mass: mass.clone(),
             goal: goal.clone(),

@@ -138,7 +138,7 @@ fn rates(system: &Coupled, measure: Measure, now: &Motion) -> [f64; 3] {
         let motion = motion();
         [motion[i], motion[i + 1], motion[i + 2]]
     };
-    match measure {
+    match measure.of_run() {
         Measure::Energy => system.primary_energy_rates(excitation, &now.y),
         Measure::Displacement => of_motion(0),
         Measure::Velocity => of_motion(1),
@@ -152,7 +152,7 @@ fn rates(system: &Coupled, measure: Measure, now: &Motion) -> [f64; 3] {
             let [near, far] = Side::BOTH.map(|side| system.contact_force_rates(excitation, &now.y, side));
             if near[0] > far[0] { near } else { far }
         }
-        Measure::Stroke | Measure::ContactForce | Measure::ContactPressure => {
+        Measure::Stroke | Measure::ContactForce | Measure::ContactPressure | Measure::Stationary(_) => {
             let [place, slope, curvature] = system.relative_position_rates(excitation, &now.y);
             [place - system.rest_distance(), slope, curvature]
         }

@@ -65,7 +65,7 @@ pub fn needs(dampers: u64, periods: f64, count: usize, allowed: f64) -> Hunt {
     for (name, walls) in [("without walls", false), ("with walls", true)] {
         let all: Vec<_> = (0..dampers).map(|number| below(number, walls, periods, count)).collect();
         for measure in Measure::ALL {
-            let shares: Vec<f64> = all.iter().map(|below| below[measure as usize]).collect();
+            let shares: Vec<f64> = all.iter().map(|below| below[measure.index()]).collect();
             let short = SHORT.map(|least| shares.iter().filter(|share| **share > least).count().to_string());
             let most = shares.iter().copied().fold(0.0, f64::max);
             let measure = measure.name();

@@ -46,6 +46,7 @@ pub fn objective(findings: &Findings) -> String {
     let window = findings.study.window;
     let window = format!("{} s to {} s of a run from rest", window.t0.get(), window.end.get());
     let how = |response| match response {
+        _ if objective.is_stationary() => "of the stationary random motion under the spectrum".to_owned(),
         Response::Window => format!("in the window from {window}"),
         Response::Settled => "of the settled motion".to_owned(),
         Response::Motions => "of every stable motion that is found".to_owned(),
