@@ -88,3 +88,23 @@ impl Frame {
         Some(b.map(|b| b + off))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The weights of a sum of directions are in its coordinates along them, though these are at angles of some degrees off.
+    #[test]
+    fn exact_coordinates_along_directions_that_are_not_orthogonal() {
+        let off = |i: usize, j: usize| 0.004 * ((i + 2 * j) % 5) as f64;
+        let q = SMatrix::from_fn(|i, j| if i == j { 1.0 } else { off(i, j) });
+        let frame = Frame { q, scales: [1.0, 2.0, 0.5, 4.0, 1.0, 8.0] };
+        let weights = [1.0, -2.0, 3.0, 0.5, -1.0, 2.0];
+        let sum = times_vector(&frame.matrix(), &weights.map(Interval::point));
+        let found = frame.coordinates(&sum).expect("nearly orthogonal");
+        for (x, weight) in found.into_iter().zip(weights) {
+            assert!(x.contains(weight) && x.width() < 2.0, "{weight}: {x}");
+        }
+        assert_eq!(Frame { q: q.map(|x| 1.5 * x), ..frame }.coordinates(&sum), None);
+    }
+}

@@ -109,7 +109,7 @@ impl Taylor {
     /// `[cos f, sin f]`, by the sums of the value at zero and of the difference from it.
     pub fn cos_sin(self) -> [Self; 2] {
         let [c, s] = cos_sin(Interval::point(self.c[0])).map(Self::from);
-        let [cos, sin] = near_zero(self - Self::point(self.c[0]));
+        let [cos, sin] = near_zero(self - Self::point(self.c[0]), CIRCLE);
         [c * cos - s * sin, s * cos + c * sin]
     }
 }
@@ -118,11 +118,11 @@ impl Taylor {
 const CIRCLE: u32 = 12;
 
 /// `[cos f, sin f]` by Taylor's series; of `|f| < 1` its terms alternate and fall, so what is left out is at most the first of it.
-fn near_zero(f: Taylor) -> [Taylor; 2] {
+fn near_zero(f: Taylor, terms: u32) -> [Taylor; 2] {
     let minus_square = -(f * f);
     let series = |first: Taylor, offset: u32| {
         let (mut term, mut sum) = (first, first);
-        for k in 0..CIRCLE {
+        for k in 0..terms {
             let n = f64::from(2 * k + offset);
             let share = Interval::ONE / Interval::point((n + 1.0) * (n + 2.0));
             term = term * minus_square * Taylor::from(share);
@@ -284,6 +284,18 @@ mod tests {
                 let [c, d] = cos_sin(Interval::point(middle) + Interval::point(slope) * Interval::point(s));
                 assert!(c.is_in(at(cos, s)) && d.is_in(at(sin, s)), "{middle} {slope} {s}");
                 assert!(at(cos, s).width() < 1e-3, "{} {c}", at(cos, s));
+            }
+        }
+    }
+
+    /// Of a few terms, where what is left out is far above rounding.
+    #[test]
+    fn exact_short_series_of_cosine_and_sine_hold_those_of_intervals() {
+        for terms in 1..CIRCLE {
+            let [cos, sin] = near_zero(Taylor::line(0.0, 0.9), terms);
+            for s in PLACES {
+                let [c, d] = cos_sin(Interval::point(0.9) * Interval::point(s));
+                assert!(c.is_in(at(cos, s)) && d.is_in(at(sin, s)), "{terms} {s}: {c} {d}");
             }
         }
     }
