@@ -1,13 +1,11 @@
 //! A whole band of frequencies: pieces of it, over each of which one family of motions is proven at once.
 
 use crate::equations::Equations;
-use crate::inverse::Inverse;
 use crate::largest::{Largest, largest};
-use crate::number::{STATE, State};
-use crate::orbit::{Orbit, Residual};
+use crate::orbit::Orbit;
 use crate::stability::{Stability, stability};
 use crate::taylor::Taylor;
-use crate::theorem::{about, impacts, is_inside, krawczyk, width};
+use crate::theorem::{alone, impacts};
 use crate::{Failure, Interval};
 use retune_model::Scene;
 use serde::Serialize;
@@ -173,10 +171,9 @@ impl Task<'_> {
                 Orbit::guess(&equations, state, periods, false)?
             }
         };
-        let (orbit, _) = start.improved(&equations)?;
-        let known = orbit.residual(&equations, &vec![[Interval::ZERO; STATE]; orbit.nodes.len()])?;
-        match stability(&orbit, &known.passages) {
-            Stability::Stable(_) => Ok(orbit),
+        let closed = start.improved(&equations)?;
+        match stability(&closed.known.passages) {
+            Stability::Stable(_) => Ok(closed.orbit),
             Stability::Unstable | Stability::Open => Err(Failure::NotStable),
         }
     }
@@ -187,10 +184,11 @@ impl Task<'_> {
         let half = (Interval::new(omega[0], omega[1]) - Interval::point(middle)).magnitude();
         let orbit = self.motion(middle, last)?;
         let equations = self.equations.at(Taylor::line(middle, half));
-        let (orbit, inverse, known) = orbit.widened(&equations)?;
-        let boxes = family(&equations, &orbit, &inverse, &known)?;
+        let closed = orbit.widened(&equations)?;
+        let (_, boxes) = alone(&equations, &closed, &TRIED, f64::INFINITY)?;
+        let orbit = closed.orbit;
         let known = orbit.residual(&equations, &boxes)?;
-        let Stability::Stable(multipliers) = stability(&orbit, &known.passages) else {
+        let Stability::Stable(multipliers) = stability(&known.passages) else {
             return Err(Failure::NotStable);
         };
         let largest = largest(&equations, &known.passages);
@@ -202,28 +200,6 @@ impl Task<'_> {
         let piece = Piece { omega, periods, impacts, largest, multipliers };
         Ok((piece, Last { orbit, omega: [middle, half] }))
     }
-}
-
-/// The boxes about a family that hold exactly one motion for each value of its parameter, from what the equations leave of the family alone.
-fn family(
-    equations: &Equations,
-    orbit: &Orbit,
-    inverse: &Inverse,
-    alone: &Residual,
-) -> Result<Vec<State>, Failure> {
-    let none = vec![[Interval::ZERO; STATE]; orbit.nodes.len()];
-    let least = krawczyk(orbit, inverse, alone, &none);
-    let mut failure = Failure::Sequence;
-    for times in TRIED {
-        let boxes = about(orbit, &least, times, f64::INFINITY);
-        let known = orbit.residual(equations, &boxes)?;
-        let image = krawczyk(orbit, inverse, &known, &boxes);
-        if is_inside(orbit, &image, &boxes) {
-            return Ok(image);
-        }
-        failure = Failure::Krawczyk { width: width(&boxes), image: width(&image) };
-    }
-    Err(failure)
 }
 
 #[cfg(test)]
@@ -241,26 +217,20 @@ mod tests {
         let scene: Scene = serde_json::from_str(text).expect("a scene");
         let (omega, half) = (6.62, 5e-3);
         let equations = Equations::new(&scene).expect("equations");
-        let alone = equations.at(Taylor::point(omega));
-        let guess = Orbit::guess(&alone, [-0.0282, 0.608, 0.183, -1.121], 1, false).expect("a guess");
-        let (orbit, _) = guess.improved(&alone).expect("a motion");
+        let single = equations.at(Taylor::point(omega));
+        let guess = Orbit::guess(&single, [-0.0282, 0.608, 0.183, -1.121], 1, false).expect("a guess");
         let wide = equations.at(Taylor::line(omega, half));
-        let (orbit, inverse, known) = orbit.widened(&wide).expect("a family");
-        let boxes = family(&wide, &orbit, &inverse, &known).expect("a proof");
+        let closed = guess.improved(&single).and_then(|own| own.orbit.widened(&wide)).expect("a family");
+        let (_, boxes) = alone(&wide, &closed, &TRIED, f64::INFINITY).expect("a proof");
         for end in [-1.0, 1.0] {
             let there = equations.at(Taylor::point(omega + half * end));
-            let (own, _) = orbit.member(&there, end).and_then(|own| own.improved(&there)).expect("a motion");
-            for (k, node) in orbit.nodes.iter().enumerate() {
-                for i in node.event.free() {
-                    let off = own.nodes[k].state[i].mid() - node.state[i].near(end);
-                    assert!(boxes[k][i].wider(1e-12).contains(off), "{k} {i}: {off:e} {}", boxes[k][i]);
-                    let way = own.nodes[k].state[i].mid() - node.state[i].mid();
-                    assert!(
-                        boxes[k][i].magnitude() < 1e-6 * way.abs() + 1e-10,
-                        "{k} {i}: {way:e} {}",
-                        boxes[k][i]
-                    );
-                }
+            let own =
+                closed.orbit.member(&there, end).and_then(|own| own.improved(&there)).expect("a motion");
+            for ((own, family), held) in own.orbit.unknowns().zip(closed.orbit.unknowns()).zip(&boxes) {
+                let off = own.mid() - family.near(end);
+                assert!(held.wider(1e-12).contains(off), "{family:?}: {off:e} {held}");
+                let way = own.mid() - family.mid();
+                assert!(held.magnitude() < 1e-6 * way.abs() + 1e-10, "{family:?}: {way:e} {held}");
             }
         }
     }

@@ -12,11 +12,8 @@ pub enum Failure {
     )]
     Scene(&'static str),
     /// A motion comes to a wall, or to the end of a contact, so slowly that it may as well not come there.
-    #[error("cannot be proven here: the motion grazes, that is, it may or may not {event}")]
-    Graze {
-        /// What may happen or not.
-        event: Event,
-    },
+    #[error("cannot be proven here: the motion grazes, that is, it may or may not {}", may(.0))]
+    Graze(Event),
     /// A contact may lose so much that its force ends before it.
     #[error(
         "cannot be proven here: the force of a contact may end, at 1 + lambda dz/dt = 0, before the contact does"
@@ -79,6 +76,15 @@ pub enum Failure {
     /// No motion to prove anything of.
     #[error("none found: the run settles on no periodic motion")]
     NoGuess,
+}
+
+/// What a motion that grazes may do.
+fn may(event: &Event) -> String {
+    match event.name().split_once(' ') {
+        Some(("touches", wall)) => format!("touch {wall}"),
+        Some(("leaves", wall)) => format!("leave {wall}"),
+        _ => format!("reach a {} in flight", event.name()),
+    }
 }
 
 impl Serialize for Failure {

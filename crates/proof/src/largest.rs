@@ -98,7 +98,7 @@ impl Quantity for Value<'_> {
 }
 
 fn square<T: Number>(motion: &[[T; STATE]], k: usize, i: usize) -> T {
-    product(k, T::constant(Interval::ZERO), |n| motion[n][i], |n| motion[n][i])
+    product(k, |n| motion[n][i], |n| motion[n][i])
 }
 
 /// `E1 = (m1 v1² + k1 x1²)/2`.
@@ -117,7 +117,7 @@ fn stretch<T: Number>(equations: &Equations, mode: Mode, motion: &[[T; STATE]]) 
         Mode::Contact(side) => {
             let sign = Interval::point(side.sign());
             let depth = (0..motion.len()).map(|k| square(motion, k, 0).times(sign)).collect();
-            (depth, equations.wall(side).unwrap_or(Interval::ENTIRE))
+            (depth, equations.walls[side as usize])
         }
     };
     series[0] = series[0] + T::constant(from - equations.rest);
@@ -129,5 +129,5 @@ fn force<T: Number>(equations: &Equations, mode: Mode, motion: &[[T; STATE]]) ->
     let Mode::Contact(side) = mode else { return vec![T::constant(Interval::ZERO); motion.len()] };
     let mut force = Push::new(equations, side);
     (0..motion.len()).for_each(|_| force.extend(motion));
-    force.push
+    force.force
 }

@@ -90,6 +90,11 @@ impl<T: Number> Gradient<T> {
         std::array::from_fn(|i| Self { value: state[i], by: std::array::from_fn(|j| entry(i == j)) })
     }
 
+    /// What does not depend on the state.
+    fn of_value(value: T) -> Self {
+        Self { value, by: [T::constant(Interval::ZERO); STATE] }
+    }
+
     fn zip(self, other: Self, value: T, by: impl Fn(T, T) -> T) -> Self {
         Self { value, by: std::array::from_fn(|j| by(self.by[j], other.by[j])) }
     }
@@ -146,12 +151,5 @@ impl<T: Number> Number for Gradient<T> {
         let value = self.value.reciprocal();
         let slope = T::constant(Interval::ZERO) - value * value;
         Self { value, by: self.by.map(|by| slope * by) }
-    }
-}
-
-impl<T: Number> Gradient<T> {
-    /// What does not depend on the state.
-    fn of_value(value: T) -> Self {
-        Self { value, by: [T::constant(Interval::ZERO); STATE] }
     }
 }

@@ -35,14 +35,7 @@ impl Range {
 
     /// Its derivative.
     pub fn slope_at(&self, t: Taylor) -> Taylor {
-        let slope = self
-            .series
-            .iter()
-            .enumerate()
-            .skip(1)
-            .map(|(k, c)| *c * Taylor::point(k as f64))
-            .collect::<Vec<_>>();
-        at(slope.into_iter(), t)
+        at(self.series.iter().enumerate().skip(1).map(|(k, c)| *c * Taylor::point(k as f64)), t)
     }
 
     fn value(&self, t: f64) -> Interval {

@@ -4,31 +4,36 @@ use crate::Interval;
 use crate::number::{Family, Number, STATE, State};
 use crate::taylor::Taylor;
 use nalgebra::SMatrix;
+use std::array;
 
 /// A matrix in intervals, `[row][column]`, or in functions of a family's parameter.
-pub type Matrix<T = Interval> = [[T; STATE]; STATE];
+pub type Matrix<T = Interval, const N: usize = STATE> = [[T; N]; N];
 
 /// The identity.
 pub fn identity<T: Number>() -> Matrix<T> {
-    let entry = |is_own: bool| T::constant(if is_own { Interval::ONE } else { Interval::ZERO });
-    std::array::from_fn(|i| std::array::from_fn(|j| entry(i == j)))
+    matrix(|i, j| T::constant(if i == j { Interval::ONE } else { Interval::ZERO }))
 }
 
 /// A matrix times a vector.
 pub fn times_vector(a: &Matrix, x: &State) -> State {
-    std::array::from_fn(|i| (0..STATE).fold(Interval::ZERO, |sum, j| sum + a[i][j] * x[j]))
+    array::from_fn(|i| (0..STATE).fold(Interval::ZERO, |sum, j| sum + a[i][j] * x[j]))
 }
 
 /// A matrix times a matrix.
-pub fn times<T: Number>(a: &Matrix<T>, b: &Matrix<T>) -> Matrix<T> {
+pub fn times<T: Number, const N: usize>(a: &Matrix<T, N>, b: &Matrix<T, N>) -> Matrix<T, N> {
     let entry =
-        |i: usize, j: usize| (0..STATE).fold(T::constant(Interval::ZERO), |sum, k| sum + a[i][k] * b[k][j]);
-    std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
+        |i: usize, j: usize| (0..N).fold(T::constant(Interval::ZERO), |sum, k| sum + a[i][k] * b[k][j]);
+    matrix(entry)
+}
+
+/// A matrix by its entries.
+pub fn matrix<T, const N: usize>(entry: impl Fn(usize, usize) -> T) -> Matrix<T, N> {
+    array::from_fn(|i| array::from_fn(|j| entry(i, j)))
 }
 
 /// Sums of the coordinates.
 pub fn plus<T: Number>(a: &[T; STATE], b: &[T; STATE]) -> [T; STATE] {
-    std::array::from_fn(|i| a[i] + b[i])
+    array::from_fn(|i| a[i] + b[i])
 }
 
 /// All values of all coordinates.
@@ -55,7 +60,7 @@ impl Frame {
     pub fn along(columns: &Matrix, weights: &[f64; STATE], scales: [f64; STATE]) -> Self {
         let entry = |i: usize, j: usize| scales[i] * columns[i][j].mid() * weights[j];
         let all = SMatrix::<f64, STATE, STATE>::from_fn(entry);
-        let mut order: [usize; STATE] = std::array::from_fn(|j| j);
+        let mut order: [usize; STATE] = array::from_fn(|j| j);
         order.sort_by(|a, b| all.column(*b).norm().total_cmp(&all.column(*a).norm()));
         let sorted = SMatrix::<f64, STATE, STATE>::from_fn(|i, j| all[(i, order[j])]);
         Self { q: sorted.qr().q(), scales }
@@ -63,24 +68,22 @@ impl Frame {
 
     /// Its directions as the columns of a matrix.
     pub fn matrix(&self) -> Matrix {
-        let scaled = |i: usize, j: usize| Interval::point(self.q[(i, j)]) / Interval::point(self.scales[i]);
-        std::array::from_fn(|i| std::array::from_fn(|j| scaled(i, j)))
+        matrix(|i, j| Interval::point(self.q[(i, j)]) / Interval::point(self.scales[i]))
     }
 
     /// The coordinates of all vectors of a box along the directions; none if these are not nearly orthogonal.
     ///
     /// With `Qᵀ Q = I + Δ` and `δ = ‖Δ‖∞ < 1` the inverse of `Q` is `(I + Δ)⁻¹ Qᵀ`, and `(I + Δ)⁻¹ b` differs from `b` by at most `δ/(1 - δ) ‖b‖∞`.
     pub fn coordinates(&self, x: &State) -> Option<State> {
-        let entries = |i: usize, j: usize| Interval::point(self.q[(i, j)]);
-        let q: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| entries(i, j)));
-        let transposed: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| entries(j, i)));
+        let q: Matrix = matrix(|i, j| Interval::point(self.q[(i, j)]));
+        let transposed = matrix(|i, j| q[j][i]);
         let (one, square) = (identity(), times(&transposed, &q));
         let row = |i: usize| (0..STATE).fold(Interval::ZERO, |sum, j| sum + (square[i][j] - one[i][j]).abs());
         let delta = (0..STATE).map(|i| row(i).hi()).fold(0.0, f64::max);
         if delta >= 0.5 || delta.is_nan() {
             return None;
         }
-        let scaled = std::array::from_fn(|i| Interval::point(self.scales[i]) * x[i]);
+        let scaled = array::from_fn(|i| Interval::point(self.scales[i]) * x[i]);
         let b = times_vector(&transposed, &scaled);
         let size = Interval::point(b.iter().map(|b| b.magnitude()).fold(0.0, f64::max));
         let delta = Interval::point(delta);

@@ -2,8 +2,8 @@
 
 use crate::Interval;
 use crate::number::FREE;
-use crate::orbit::Orbit;
 use crate::segment::Passage;
+use crate::small::{Matrix, matrix, times};
 use crate::taylor::Taylor;
 use nalgebra::{Matrix4, SMatrix};
 use serde::Serialize;
@@ -19,7 +19,7 @@ const LEAST: f64 = 1e-6;
 const DEPTH: u32 = 6;
 
 /// A matrix of the free coordinates.
-type Section = [[Taylor; FREE]; FREE];
+type Section = Matrix<Taylor, FREE>;
 
 /// What is proven of the multipliers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -34,9 +34,8 @@ pub enum Stability {
 }
 
 /// Whether a motion, or each of a family, is stable, from what is known of its segments.
-pub fn stability(orbit: &Orbit, passages: &[Passage]) -> Stability {
-    let segments: Vec<Section> =
-        passages.iter().enumerate().map(|(k, passage)| section(orbit, k, passage)).collect();
+pub fn stability(passages: &[Passage]) -> Stability {
+    let segments: Vec<Section> = passages.iter().map(|passage| passage.by).collect();
     if segments.iter().flatten().flatten().all(|x| x.is_constant()) {
         stability_of(&segments)
     } else {
@@ -59,18 +58,6 @@ fn stability_over(segments: &[Section], [middle, half]: [f64; 2], depth: u32) ->
         [Stability::Unstable, Stability::Unstable] => Stability::Unstable,
         _ => Stability::Open,
     }
-}
-
-/// The derivatives of the free coordinates at the end of a segment by those at its beginning.
-fn section(orbit: &Orbit, k: usize, passage: &Passage) -> Section {
-    let (from, to) = (orbit.nodes[k].event, orbit.nodes[(k + 1) % orbit.nodes.len()].event);
-    let (rows, columns): (Vec<usize>, Vec<usize>) = (to.free().collect(), from.free().collect());
-    array::from_fn(|i| array::from_fn(|j| passage.by[rows[i]][columns[j]]))
-}
-
-fn times(a: &Section, b: &Section) -> Section {
-    let entry = |i: usize, j: usize| (0..FREE).fold(Taylor::ZERO, |sum, k| sum + a[i][k] * b[k][j]);
-    array::from_fn(|i| array::from_fn(|j| entry(i, j)))
 }
 
 /// Whether all multipliers of all matrices are below 1, or one of each is above.
@@ -98,12 +85,12 @@ fn stability_of(segments: &[Section]) -> Stability {
     Stability::Stable(found.unwrap_or(1.0))
 }
 
-fn middle(matrix: &Section) -> Matrix4<f64> {
-    Matrix4::from_fn(|i, j| matrix[i][j].mid())
+fn middle(of: &Section) -> Matrix4<f64> {
+    Matrix4::from_fn(|i, j| of[i][j].mid())
 }
 
-fn points(matrix: &Matrix4<f64>) -> Section {
-    array::from_fn(|i| array::from_fn(|j| Taylor::point(matrix[(i, j)])))
+fn points(of: &Matrix4<f64>) -> Section {
+    matrix(|i, j| Taylor::point(of[(i, j)]))
 }
 
 /// Whether all multipliers of the product of so many matrices, each over `bound`, are below 1 (true), or one is above (false); none if neither is proven.
@@ -153,14 +140,13 @@ fn are_falling(scaled: &[Section], forms: &[Matrix4<f64>]) -> bool {
         };
         let before = seen(&points(v), &points(&c));
         let after = seen(&points(next), &times(n, &points(&c)));
-        is_positive_definite(&array::from_fn(|i| array::from_fn(|j| before[i][j] - after[i][j])))
+        is_positive_definite(&matrix(|i, j| before[i][j] - after[i][j]))
     })
 }
 
 /// A form in other coordinates, `Cᵀ V C`.
 fn seen(form: &Section, c: &Section) -> Section {
-    let turned: Section = array::from_fn(|i| array::from_fn(|j| c[j][i]));
-    times(&times(&turned, form), c)
+    times(&times(&matrix(|i, j| c[j][i]), form), c)
 }
 
 /// Whether a symmetric matrix is positive definite (true), or negative in some direction (false); none if neither is proven.
