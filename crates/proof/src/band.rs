@@ -1,12 +1,10 @@
 //! A whole band of frequencies: pieces of it, over each of which one family of motions is proven at once.
 
-use crate::equations::Equations;
 use crate::largest::{Largest, largest};
-use crate::orbit::Orbit;
+use crate::orbit::{Closed, Guess, Orbit};
 use crate::stability::{Stability, stability};
-use crate::taylor::Taylor;
 use crate::theorem::{alone, impacts};
-use crate::{Failure, Interval};
+use crate::{Equations, Failure, Interval, Taylor};
 use retune_model::Scene;
 use serde::Serialize;
 
@@ -56,8 +54,8 @@ pub struct LeftOut {
     pub why: Failure,
 }
 
-/// A state at a crest of the force at a frequency, and after how many periods it repeats.
-pub type Guesses<'a> = &'a dyn Fn(f64) -> Option<([f64; 4], usize)>;
+/// A guess at a frequency.
+pub type Guesses<'a> = &'a dyn Fn(f64) -> Option<Guess>;
 
 /// Proves stable motions with an E1max of at most `most` (J) over a band, as far as it can. A motion is followed from piece to piece, which need not be one branch:
 /// where it is lost, a new one is guessed beyond, and followed to both sides.
@@ -118,11 +116,7 @@ impl Band {
 }
 
 /// The family of a piece, with the frequency in its middle and half its width.
-#[derive(Clone)]
-struct Last {
-    orbit: Orbit,
-    omega: [f64; 2],
-}
+type Last = (Orbit, [f64; 2]);
 
 /// What is to be proven.
 struct Task<'a> {
@@ -137,8 +131,8 @@ type March = (Vec<Piece>, Option<Last>, Option<(f64, Failure)>);
 impl Task<'_> {
     /// Pieces from a frequency up or down to another one, from a family next to them or a guess.
     fn march(&self, [from, to]: [f64; 2], longest: f64, beside: Option<Last>) -> March {
-        let (mut pieces, mut first, mut at, mut length) = (Vec::new(), None, from, longest);
-        let mut last = beside;
+        let (mut pieces, mut first, mut last) = (Vec::new(), None, beside);
+        let (mut at, mut length) = (from, longest);
         while at != to {
             let end = if (to - at).abs() <= 1.01 * length { to } else { at + length.copysign(to - at) };
             let omega = [at.min(end), at.max(end)];
@@ -149,12 +143,10 @@ impl Task<'_> {
                     (at, last, length) = (end, Some(own), (LONGER * (end - at).abs()).min(LONGEST));
                 }
                 // All motions of the piece have more.
-                Err(why @ Failure::Above { least, .. }) if least > self.most => {
+                Err(why) if matches!(why, Failure::Above(energy, most) if energy.lo() > most) => {
                     return (pieces, first, Some((end, why)));
                 }
-                Err(why) if (end - at).abs() <= SHORTEST => {
-                    return (pieces, first, Some((at, why)));
-                }
+                Err(why) if (end - at).abs() <= SHORTEST => return (pieces, first, Some((at, why))),
                 Err(_) => length = SHORTER * (end - at).abs(),
             }
         }
@@ -165,16 +157,13 @@ impl Task<'_> {
     fn motion(&self, omega: f64, last: Option<&Last>) -> Result<Orbit, Failure> {
         let equations = self.equations.at(Taylor::point(omega));
         let start = match last {
-            Some(last) => last.orbit.member(&equations, (omega - last.omega[0]) / last.omega[1])?,
-            None => {
-                let (state, periods) = (self.guesses)(omega).ok_or(Failure::NoGuess)?;
-                Orbit::guess(&equations, state, periods, false)?
-            }
+            Some((orbit, [middle, half])) => orbit.member(&equations, (omega - middle) / half)?,
+            None => Orbit::guess(&equations, (self.guesses)(omega).ok_or(Failure::NoGuess)?, false)?,
         };
-        let closed = start.improved(&equations)?;
-        match stability(&closed.known.passages) {
-            Stability::Stable(_) => Ok(closed.orbit),
-            Stability::Unstable | Stability::Open => Err(Failure::NotStable),
+        let Closed { orbit, known, .. } = start.improved(&equations)?;
+        match stability(&known.passages) {
+            Stability::Stable(_) => Ok(orbit),
+            _ => Err(Failure::NotStable),
         }
     }
 
@@ -186,19 +175,17 @@ impl Task<'_> {
         let equations = self.equations.at(Taylor::line(middle, half));
         let closed = orbit.widened(&equations)?;
         let (_, boxes) = alone(&equations, &closed, &TRIED, f64::INFINITY)?;
-        let orbit = closed.orbit;
+        let Closed { orbit, .. } = closed;
         let known = orbit.residual(&equations, &boxes)?;
         let Stability::Stable(multipliers) = stability(&known.passages) else {
             return Err(Failure::NotStable);
         };
         let largest = largest(&equations, &known.passages);
         if largest.energy.hi() > self.most {
-            let [least, bound] = [largest.energy.lo(), largest.energy.hi()];
-            return Err(Failure::Above { least, bound, most: self.most });
+            return Err(Failure::Above(largest.energy, self.most));
         }
-        let (periods, impacts) = (orbit.periods, impacts(&orbit));
-        let piece = Piece { omega, periods, impacts, largest, multipliers };
-        Ok((piece, Last { orbit, omega: [middle, half] }))
+        let piece = Piece { omega, periods: orbit.periods, impacts: impacts(&orbit), largest, multipliers };
+        Ok((piece, (orbit, [middle, half])))
     }
 }
 
@@ -218,7 +205,7 @@ mod tests {
         let (omega, half) = (6.62, 5e-3);
         let equations = Equations::new(&scene).expect("equations");
         let single = equations.at(Taylor::point(omega));
-        let guess = Orbit::guess(&single, [-0.0282, 0.608, 0.183, -1.121], 1, false).expect("a guess");
+        let guess = Orbit::guess(&single, ([-0.0282, 0.608, 0.183, -1.121], 1), false).expect("a guess");
         let wide = equations.at(Taylor::line(omega, half));
         let closed = guess.improved(&single).and_then(|own| own.orbit.widened(&wide)).expect("a family");
         let (_, boxes) = alone(&wide, &closed, &TRIED, f64::INFINITY).expect("a proof");

@@ -1,12 +1,10 @@
 //! Where motions cross a section: a wall, the end of a contact, or a crest of the force.
 
-use crate::Interval;
 use crate::equations::Flow;
-use crate::event::Event;
 use crate::number::Family;
-use crate::small::{Matrix, hull, matrix, times};
+use crate::small::{Matrix, matrix, times};
 use crate::step::{States, derivatives_within, enclosure};
-use crate::taylor::Taylor;
+use crate::{Event, Interval, Taylor};
 use std::array;
 
 /// Attempts to enclose the time of a crossing.
@@ -50,7 +48,7 @@ pub fn cross(flow: Flow<'_>, states: &States, section: &Section) -> Option<Cross
 
     let (delay, near, slopes) = reach(flow, &states.all(), section)?;
     let delay = delay.hull();
-    let within = derivatives_within(flow, &hull(&near), delay.hull(Interval::ZERO))?;
+    let within = derivatives_within(flow, &near.map(Taylor::hull), delay.hull(Interval::ZERO))?;
     let by = times(&within.map(|row| row.map(Taylor::from)), &states.by);
     // The time of crossing changes by minus the change of the coordinate over its slope.
     let per_slope = slopes[fixed].reciprocal();
@@ -74,7 +72,7 @@ fn reach(flow: Flow<'_>, start: &Family, section: &Section) -> Option<(Taylor, F
         let tried = delay.wider(0.1 * delay.width() + f64::MIN_POSITIVE);
         let way = tried.hull(Interval::ZERO);
         // All of the family, then each of its motions.
-        let rough = flow.derivative(&enclosure(flow, &hull(start), way)?);
+        let rough = flow.derivative(&enclosure(flow, &start.map(Taylor::hull), way)?);
         let near: Family = array::from_fn(|i| start[i] + Taylor::from(way * rough[i]));
         let slopes = flow.derivative(&near);
         let next = newton(&slopes)?;

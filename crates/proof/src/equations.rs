@@ -8,8 +8,7 @@
 use crate::elementary::pi;
 use crate::loss::Factor;
 use crate::number::{Number, SPEED, STATE};
-use crate::taylor::Taylor;
-use crate::{Failure, Interval};
+use crate::{Event, Failure, Interval, Taylor};
 use retune_model::{Contact, Scene, Side, Source, Surfaces};
 use std::array;
 
@@ -20,8 +19,14 @@ pub struct Equations {
     pub omega: Taylor,
     /// m1.
     pub m1: Interval,
+    /// c1.
+    c1: Interval,
     /// k1.
     pub k1: Interval,
+    /// m2, c2, k2.
+    m2: Interval,
+    c2: Interval,
+    k2: Interval,
     /// D.
     pub rest: Interval,
     /// Where the walls are; anywhere if there are none.
@@ -32,15 +37,8 @@ pub struct Equations {
     pub factors: [Factor; 2],
     /// Powers of two that make the coordinates alike: roots of energies, which damping lets fall.
     pub scales: [f64; STATE],
-    /// 1/m1, c1/m1, k1/m1.
-    inverse_m1: Interval,
-    damping: Interval,
-    stiffness: Interval,
-    /// The force over m1, as weights of `[cos φ, ω² cos φ, ω sin φ]`.
+    /// The force, as weights of `[cos φ, ω² cos φ, ω sin φ]`.
     force: [Interval; 3],
-    inverse_m2: Interval,
-    c2: Interval,
-    k2: Interval,
 }
 
 /// What the damper does.
@@ -69,23 +67,20 @@ impl Equations {
     pub fn new(scene: &Scene) -> Result<Self, Failure> {
         let number = Interval::decimal;
         let damper = scene.damper.as_ref().ok_or(Failure::Scene("a scene without damper"))?;
-        let [m1, c1, k1] =
-            [scene.primary.mass.get(), scene.primary.damping.get(), scene.primary.stiffness.get()]
-                .map(number);
+        let of = &scene.primary;
+        let [m1, c1, k1] = [of.mass.get(), of.damping.get(), of.stiffness.get()].map(number);
+        let [m2, c2, k2] = [damper.mass.get(), damper.damping.get(), damper.stiffness.get()].map(number);
         let omega = number(scene.forcing.frequency.get());
         if !omega.is_positive() {
             return Err(Failure::Scene("a forcing whose omega is not above 0"));
         }
+        // k1 y + c1 dy/dt with y = Y cos φ.
+        let base = |y: Interval| [y * k1, Interval::ZERO, -(y * c1)];
         let force = match scene.forcing.source {
             Source::Force(p) => [number(p.get()), Interval::ZERO, Interval::ZERO],
             Source::Imbalance(me) => [Interval::ZERO, number(me.get()), Interval::ZERO],
-            // k1 y + c1 dy/dt with y = Y cos φ.
-            Source::Base(y) => [number(y.get()) * k1, Interval::ZERO, -(number(y.get()) * c1)],
-            // The same with Y = a / ω².
-            Source::BaseAcceleration(a) => {
-                let y = number(a.get()) / (omega * omega);
-                [y * k1, Interval::ZERO, -(y * c1)]
-            }
+            Source::Base(y) => base(number(y.get())),
+            Source::BaseAcceleration(a) => base(number(a.get()) / (omega * omega)),
             Source::Decay(_) => return Err(Failure::Scene("a free decay, which does not repeat")),
             Source::History(_) => {
                 return Err(Failure::Scene("a pulse or a record, under which no motion repeats"));
@@ -101,24 +96,9 @@ impl Equations {
                 (walls, hertz_stiffness(surfaces), [Factor::new(&a)?, Factor::new(&b)?])
             }
         };
-        let inverse_m1 = Interval::ONE / m1;
-        Ok(Self {
-            omega: Taylor::from(omega),
-            m1,
-            k1,
-            rest,
-            walls,
-            hertz,
-            factors,
-            scales: scales(m1 / number(damper.mass.get()), omega.square() + k1 * inverse_m1),
-            inverse_m1,
-            damping: c1 * inverse_m1,
-            stiffness: k1 * inverse_m1,
-            force: force.map(|part| part * inverse_m1),
-            inverse_m2: Interval::ONE / number(damper.mass.get()),
-            c2: number(damper.damping.get()),
-            k2: number(damper.stiffness.get()),
-        })
+        let scales = scales(m1 / m2, omega.square() + k1 * (Interval::ONE / m1));
+        let omega = Taylor::from(omega);
+        Ok(Self { omega, m1, c1, k1, m2, c2, k2, rest, walls, hertz, factors, scales, force })
     }
 
     /// The same at the frequencies of a function, exactly.
@@ -128,11 +108,17 @@ impl Equations {
 
     /// `1/m1 + 1/m2`.
     pub fn inverse_masses(&self) -> Interval {
-        self.inverse_m1 + self.inverse_m2
+        Interval::ONE / self.m1 + Interval::ONE / self.m2
     }
 }
 
-impl Flow<'_> {
+impl<'a> Flow<'a> {
+    /// That after an event.
+    pub fn after(equations: &'a Equations, event: Event) -> Self {
+        let mode = if let Event::Touch(side) = event { Mode::Contact(side) } else { Mode::Flight };
+        Self { equations, mode }
+    }
+
     /// Towards which side the first coordinate is counted: minus one in a contact with the structure.
     pub fn sign(self) -> Interval {
         Interval::point(if let Mode::Contact(side) = self.mode { side.sign() } else { 1.0 })
@@ -145,9 +131,9 @@ impl Flow<'_> {
             Mode::Flight => (-own.rest, None),
             Mode::Contact(side) => (sign * (own.walls[side as usize] - own.rest), Some(Push::new(own, side))),
         };
-        let omega = T::of(own.omega);
-        let force =
-            [T::constant(own.force[0]) + (omega * omega).times(own.force[1]), omega.times(own.force[2])];
+        let [per_m1, per_m2] = [own.m1, own.m2].map(|mass| Interval::ONE / mass);
+        let (omega, f) = (T::of(own.omega), own.force.map(|part| part * per_m1));
+        let force = [T::constant(f[0]) + (omega * omega).times(f[1]), omega.times(f[2])];
         let (mut y, mut circle) = (vec![*start], vec![start[4].cos_sin()]);
         // Of a contact: the two accelerations, which are multiplied by dt/dθ = q, and that of the speed v.
         let mut accelerations: Vec<[T; 3]> = Vec::new();
@@ -164,9 +150,9 @@ impl Flow<'_> {
                 push = push + T::constant(own.k2 * stretch);
             }
             // m1 a1 = F - c1 v1 - k1 x1 + s push, and m2 a2 = -s push.
-            let a1 = cos * force[0] + sin * force[1] - v1.times(own.damping) - x1.times(own.stiffness)
-                + push.times(sign * own.inverse_m1);
-            let rate = zero - push.times(own.inverse_m2) - a1.times(sign);
+            let a1 = cos * force[0] + sin * force[1] - v1.times(own.c1 * per_m1) - x1.times(own.k1 * per_m1)
+                + push.times(sign * per_m1);
+            let rate = zero - push.times(per_m2) - a1.times(sign);
             let slopes = if let Some(contact) = &mut contact {
                 let others = rate + contact.force[k].times(own.inverse_masses());
                 accelerations.push([rate, a1, contact.speeding(others)]);
@@ -263,12 +249,9 @@ impl<'a, T: Number> Push<'a, T> {
 
 /// Adds the next term of the series of `1/x`.
 fn quotient<T: Number>(inverse: &mut Vec<T>, of: impl Fn(usize) -> T) {
-    let next = match inverse.first() {
-        None => of(0).reciprocal(),
-        Some(first) => {
-            let others = product(inverse.len() - 1, |i| inverse[i], |i| of(i + 1));
-            T::constant(Interval::ZERO) - *first * others
-        }
+    let next = match inverse.len() {
+        0 => of(0).reciprocal(),
+        k => T::constant(Interval::ZERO) - inverse[0] * product(k - 1, |i| inverse[i], |i| of(i + 1)),
     };
     inverse.push(next);
 }

@@ -1,7 +1,5 @@
 //! What happens to a motion: impacts, ends of contacts, crests of the force.
 
-use crate::Failure;
-use crate::equations::Mode;
 use crate::number::FREE;
 use retune_model::Side;
 
@@ -38,25 +36,20 @@ impl Event {
         matches!(self, Self::Crest | Self::Touch(Side::Obstacle))
     }
 
-    /// What the damper does after it.
-    pub fn mode_after(self) -> Mode {
-        if let Self::Touch(side) = self { Mode::Contact(side) } else { Mode::Flight }
+    /// Whether both are at one wall.
+    pub fn is_beside(self, other: Self) -> bool {
+        matches!((self, other), (Self::Touch(a), Self::Leave(b)) | (Self::Leave(a), Self::Touch(b)) if a == b)
     }
 
-    /// What it is called.
+    /// What a motion does there, in words.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Crest => "crest of the force",
+            Self::Crest => "reaches a crest of the force in flight",
             Self::Touch(Side::Primary) => "touches the structure",
             Self::Touch(Side::Obstacle) => "touches the obstacle",
             Self::Leave(Side::Primary) => "leaves the structure",
             Self::Leave(Side::Obstacle) => "leaves the obstacle",
-            Self::Pull => "end of the force of a contact",
+            Self::Pull => "loses the force of a contact",
         }
-    }
-
-    /// That motions may come to it, or not.
-    pub fn doubt(self) -> Failure {
-        if self == Self::Pull { Failure::Pulls } else { Failure::Graze(self) }
     }
 }

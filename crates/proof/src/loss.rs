@@ -2,7 +2,6 @@
 
 use crate::{Failure, Interval};
 use retune_model::Loss;
-use std::cmp::Ordering;
 
 /// The factor of Hertz's force.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +44,7 @@ pub fn touch_down(chi: f64, stored: f64, w: f64) -> f64 {
         v * v * ((1.0 - h) - (chi.ln_1p() - (chi * h).ln_1p()) / chi) / chi - stored
     };
     let (mut low, mut high) = (w.abs(), 2.0 * w.abs() + 1e-9);
-    while excess(high).partial_cmp(&0.0) != Some(Ordering::Greater) && high < 1e9 {
+    while (excess(high) <= 0.0 || excess(high).is_nan()) && high < 1e9 {
         high *= 2.0;
     }
     for _ in 0..80 {

@@ -2,13 +2,10 @@
 
 use crate::crossing::Section;
 use crate::elementary::pi;
-use crate::equations::Equations;
-use crate::event::Event;
 use crate::inverse::Inverse;
 use crate::number::FREE;
 use crate::segment::{Node, Passage, Plan, aimed, follow, plan, rest_of_contact};
-use crate::taylor::Taylor;
-use crate::{Failure, Interval};
+use crate::{Equations, Event, Failure, Interval, Taylor};
 use retune_model::Side;
 use std::f64::consts::TAU;
 
@@ -23,6 +20,9 @@ const CLOSED: f64 = 1e-13;
 
 /// A motion that is as near as this to its first phase, rad, has come back.
 const BACK: f64 = 1e-2;
+
+/// A state `[x1, v1, x2, v2]` at a crest of the force, and after how many periods it may repeat.
+pub type Guess = ([f64; 4], usize);
 
 /// A motion that may repeat after so many periods of the force.
 #[derive(Clone, Debug)]
@@ -68,12 +68,8 @@ impl Orbit {
     ///
     /// # Errors
     /// The motion grazes, or does not come back.
-    pub fn guess(
-        equations: &Equations,
-        [x1, v1, x2, v2]: [f64; 4],
-        periods: usize,
-        at_crest: bool,
-    ) -> Result<Self, Failure> {
+    pub fn guess(equations: &Equations, (start, periods): Guess, at_crest: bool) -> Result<Self, Failure> {
+        let [x1, v1, x2, v2] = start;
         let (r, w) = (x2 - x1, v2 - v1);
         let crest = Node { event: Event::Crest, state: [r, w, x1, v1, 0.0, 0.0].map(Taylor::point) };
         let depth = |side: Side| side.sign() * (r - equations.walls[side as usize].mid());
@@ -109,7 +105,7 @@ impl Orbit {
             orbit.turns.push(turns);
             orbit.nodes.push(reached);
         }
-        Err(Failure::Endless { steps: EVENTS })
+        Err(Failure::Endless(EVENTS))
     }
 
     /// The unknowns.
@@ -123,11 +119,6 @@ impl Orbit {
         (self.nodes[0].event == Event::Crest).then(|| turn(self.periods - taken))
     }
 
-    /// The place of the node after one.
-    fn next(&self, k: usize) -> usize {
-        (k + 1) % self.nodes.len()
-    }
-
     /// Its equations at all states whose unknowns are `away` from those of its nodes.
     ///
     /// # Errors
@@ -136,7 +127,7 @@ impl Orbit {
         let (mut passages, mut gaps) = (Vec::new(), Vec::new());
         for (k, (node, away)) in self.nodes.iter().zip(away.chunks(FREE)).enumerate() {
             let passage = follow(equations, node, away, &self.plans[k])?;
-            let next = &self.nodes[self.next(k)];
+            let next = &self.nodes[(k + 1) % self.nodes.len()];
             for i in next.event.free() {
                 let shift = if i == 4 { turn(self.turns[k]) } else { Interval::ZERO };
                 gaps.push(passage.centre[i] - next.state[i] - Taylor::from(shift));
@@ -152,7 +143,7 @@ impl Orbit {
         let mut all = vec![vec![Taylor::ZERO; n]; n];
         for (k, passage) in passages.iter().enumerate() {
             for (i, row) in passage.by.iter().enumerate() {
-                let (whole, own) = (&mut all[FREE * k + i], FREE * self.next(k) + i);
+                let (whole, own) = (&mut all[FREE * k + i], FREE * ((k + 1) % self.nodes.len()) + i);
                 whole[FREE * k..][..FREE].copy_from_slice(row);
                 whole[own] = whole[own] - Taylor::point(1.0);
             }
@@ -160,11 +151,12 @@ impl Orbit {
         all
     }
 
-    /// What the equations leave at the nodes themselves, and the inverse of their derivatives there.
-    fn at_nodes(&self, equations: &Equations) -> Result<(Residual, Option<Inverse>), Failure> {
+    /// With what the equations leave at the nodes themselves, and the inverse of their derivatives there.
+    fn closed(self, equations: &Equations) -> Result<Closed, Failure> {
         let known = self.residual(equations, &vec![Interval::ZERO; FREE * self.nodes.len()])?;
         let inverse = Inverse::of(&self.jacobian(&known.passages));
-        Ok((known, inverse))
+        let refused = Failure::Guess(self.periods, largest(&known.gaps));
+        Ok(Closed { orbit: self, known, inverse: inverse.ok_or(refused)? })
     }
 
     /// With other unknowns.
@@ -211,8 +203,7 @@ impl Orbit {
         let closed = |mut orbit: Self| {
             let aim = |(node, plan): (&Node, &Plan)| aimed(equations, node, plan);
             orbit.plans = orbit.nodes.iter().zip(&orbit.plans).map(aim).collect();
-            let (known, inverse) = orbit.at_nodes(equations)?;
-            Ok(Closed { orbit, known, inverse: inverse.ok_or(Failure::Sequence)? })
+            orbit.closed(equations)
         };
         (0..WIDENED)
             .try_fold(closed(self)?, |own, _| closed(own.orbit.less(&own.inverse.times(&own.known.gaps))))
@@ -223,23 +214,24 @@ impl Orbit {
     /// # Errors
     /// The iteration does not end on a motion that repeats.
     pub fn improved(self, equations: &Equations) -> Result<Closed, Failure> {
-        let (mut orbit, mut last) = (self, f64::INFINITY);
+        let (mut own, mut last) = (self.closed(equations)?, f64::INFINITY);
         for _ in 0..ITERATIONS {
-            let (known, inverse) = orbit.at_nodes(equations)?;
-            let gap = known.gaps.iter().map(|gap| gap.mid().abs()).fold(0.0, f64::max);
-            let refused = Failure::Guess { periods: orbit.periods, gap };
-            let inverse = inverse.ok_or(refused.clone())?;
-            let change = inverse.times(&known.gaps);
-            let size = change.iter().map(|x| x.mid().abs()).fold(0.0, f64::max);
+            let change = own.inverse.times(&own.known.gaps);
+            let size = largest(&change);
             if size <= CLOSED || (size < 1e-9 && size >= 0.5 * last) {
-                return Ok(Closed { orbit, known, inverse });
+                return Ok(own);
             }
             if size.is_nan() || size >= 2.0 * last {
-                return Err(refused);
+                break;
             }
             last = size;
-            orbit = orbit.less(&change).planned(equations)?;
+            own = own.orbit.less(&change).planned(equations)?.closed(equations)?;
         }
-        Err(Failure::Guess { periods: orbit.periods, gap: last })
+        Err(Failure::Guess(own.orbit.periods, largest(&own.known.gaps)))
     }
+}
+
+/// The largest of the values at the middles; no number if one is none.
+fn largest(all: &[Taylor]) -> f64 {
+    all.iter().map(|x| x.mid().abs()).fold(0.0, |most, x| if x.is_nan() { x } else { x.max(most) })
 }

@@ -1,8 +1,7 @@
 //! What values a quantity has during a step, from its Taylor series with the last coefficient anywhere in the step.
 
-use crate::Interval;
 use crate::equations::at;
-use crate::taylor::Taylor;
+use crate::{Interval, Taylor};
 
 /// Halvings of a step before nothing more is tried.
 const DEPTH: u32 = 24;

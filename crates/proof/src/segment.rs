@@ -1,15 +1,13 @@
 //! From one event of a motion to the next: a flight to a wall or to a crest of the force, a contact to its end.
 
 use crate::crossing::{Section, cross};
-use crate::equations::{Equations, Flow, Mode, at};
-use crate::event::Event;
+use crate::equations::{Flow, Mode, at};
 use crate::loss::{Factor, touch_down};
-use crate::number::{FREE, Family, Number, SPEED, STATE};
+use crate::number::{Family, Number, SPEED, STATE};
 use crate::range::Range;
-use crate::small::{Matrix, identity, matrix};
+use crate::small::{Block, identity, matrix};
 use crate::step::{ORDER, Piece, Quantity, States, step};
-use crate::taylor::Taylor;
-use crate::{Failure, Interval};
+use crate::{Equations, Event, Failure, Interval, Taylor};
 use retune_model::Side;
 use std::array;
 
@@ -39,7 +37,7 @@ pub struct Passage {
     /// What the motion from the centre has come to.
     pub centre: Family,
     /// The derivatives of the free coordinates at the end by those at the beginning.
-    pub by: Matrix<Taylor, FREE>,
+    pub by: Block,
     /// What is known in between.
     pub pieces: Vec<Piece>,
     /// All motions about the end, in the coordinates of the mode, and from where to where it may be, counted from the end of the last piece.
@@ -106,11 +104,8 @@ impl Quantity for Section {
     fn series<T: Number>(&self, _: Mode, motion: &[[T; STATE]]) -> Vec<T> {
         let mut series: Vec<T> = motion.iter().map(|c| c[self.event.fixed()]).collect();
         series[0] = series[0] - T::constant(self.value);
-        if self.event.is_rising() {
-            series.iter().map(|c| T::constant(Interval::ZERO) - *c).collect()
-        } else {
-            series
-        }
+        let to_come = |c: T| if self.event.is_rising() { T::constant(Interval::ZERO) - c } else { c };
+        series.into_iter().map(to_come).collect()
     }
 }
 
@@ -136,8 +131,7 @@ fn first_event<'a>(sections: &'a [Section], piece: &Piece) -> Option<(f64, &'a S
 /// # Errors
 /// No next event, or none that is crossed with a speed.
 pub fn plan(equations: &Equations, node: &Node, crest: Option<Interval>) -> Result<Plan, Failure> {
-    let flow = Flow { equations, mode: node.event.mode_after() };
-    plan_from(flow, first(equations, node, &[]), crest)
+    plan_from(Flow::after(equations, node.event), first(equations, node, &[]), crest)
 }
 
 fn plan_from(flow: Flow<'_>, mut states: States, crest: Option<Interval>) -> Result<Plan, Failure> {
@@ -149,20 +143,20 @@ fn plan_from(flow: Flow<'_>, mut states: States, crest: Option<Interval>) -> Res
             let last = Taylor::point(share * taken);
             let near = step(flow, &states, last, ORDER).filter(|_| end.event != Event::Pull);
             let crossing = near.and_then(|(near, _)| cross(flow, &near, end));
-            let centre = crossing.ok_or(end.event.doubt())?.centre;
+            let centre = crossing.ok_or(Failure::open(end.event))?.centre;
             steps.push(last);
             return Ok(Plan { steps, end: *end, reached: in_flight(flow, centre).map(Taylor::polynomial) });
         }
         (states, h) = (next, (1.5 * taken).min(GREATEST));
         steps.push(Taylor::point(taken));
     }
-    Err(Failure::Endless { steps: STEPS })
+    Err(Failure::Endless(STEPS))
 }
 
 /// The same steps for a family: all longer or shorter by one share, so that the last one ends at the event for all values of the parameter, to the order that the
 /// states have.
 pub fn aimed(equations: &Equations, node: &Node, plan: &Plan) -> Plan {
-    let flow = Flow { equations, mode: node.event.mode_after() };
+    let flow = Flow::after(equations, node.event);
     let mut state = first(equations, node, &[]).centre();
     let Some((last, steps)) = plan.steps.split_last() else { return plan.clone() };
     for &h in steps {
@@ -206,33 +200,29 @@ fn in_flight(flow: Flow<'_>, mut state: Family) -> Family {
 ///
 /// # Errors
 /// It cannot be proven for a box as wide.
-pub fn follow(
-    equations: &Equations,
-    node: &Node,
-    away: &[Interval],
-    Plan { steps, end, .. }: &Plan,
-) -> Result<Passage, Failure> {
-    let flow = Flow { equations, mode: node.event.mode_after() };
+pub fn follow(equations: &Equations, node: &Node, away: &[Interval], way: &Plan) -> Result<Passage, Failure> {
+    let (flow, Plan { steps, end, .. }) = (Flow::after(equations, node.event), way);
     let (mut states, mut pieces) = (first(equations, node, away), Vec::with_capacity(steps.len()));
     let sections = sections(flow, None);
     for (k, &h) in steps.iter().enumerate() {
         let (next, piece) = step(flow, &states, h, ORDER).ok_or_else(|| too_wide(h.mid(), &states))?;
         for section in &sections {
-            let starts = k == 0 && starts_at(node.event, section.event);
+            // A wall that a motion leaves, or the end of the contact that begins.
+            let starts = k == 0 && section.event.is_beside(node.event);
             let ends = k + 1 == steps.len() && section.event == end.event;
             if !Range::new(piece.series_of(section)).is_positive(starts, ends) {
-                return Err(section.event.doubt());
+                return Err(Failure::open(section.event));
             }
         }
         pieces.push(piece);
         states = next;
     }
-    let crossing = cross(flow, &states, end).ok_or(end.event.doubt())?;
+    let crossing = cross(flow, &states, end).ok_or(Failure::open(end.event))?;
     // What it does not end at is not reached about the end either.
     for section in sections.iter().filter(|section| section.event != end.event) {
         let left = section.value - crossing.near[section.event.fixed()].hull();
         if !section.is_towards(left) {
-            return Err(section.event.doubt());
+            return Err(Failure::open(section.event));
         }
     }
     // From a contact with the structure or to its end the speed changes its sign.
@@ -248,17 +238,8 @@ pub fn follow(
     })
 }
 
-/// Whether a motion is on the section of an event when it starts from another: on a wall that it leaves, or whose contact begins.
-fn starts_at(from: Event, event: Event) -> bool {
-    match (from, event) {
-        (Event::Touch(_), Event::Leave(_)) => true,
-        (Event::Leave(left), Event::Touch(wall)) => left == wall,
-        _ => false,
-    }
-}
-
 fn too_wide(least: f64, states: &States) -> Failure {
-    Failure::Step { least, width: states.all().iter().map(|x| x.hull().width()).fold(0.0, f64::max) }
+    Failure::Step(least, states.all().iter().map(|x| x.hull().width()).fold(0.0, f64::max))
 }
 
 /// Where the rest of a contact ends that has come to a state `[q, w, x1, v1, φ, 0]`.

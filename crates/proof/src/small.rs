@@ -1,13 +1,15 @@
 //! Matrices of as many rows as a state has, in intervals, and a frame of nearly orthogonal directions with its inverse.
 
-use crate::Interval;
-use crate::number::{Family, Number, STATE, State};
-use crate::taylor::Taylor;
+use crate::number::{FREE, Number, STATE, State};
+use crate::{Interval, Taylor};
 use nalgebra::SMatrix;
 use std::array;
 
 /// A matrix in intervals, `[row][column]`, or in functions of a family's parameter.
 pub type Matrix<T = Interval, const N: usize = STATE> = [[T; N]; N];
+
+/// One of the free coordinates, for each value of a family's parameter.
+pub type Block = Matrix<Taylor, FREE>;
 
 /// The identity.
 pub fn identity<T: Number>() -> Matrix<T> {
@@ -36,11 +38,6 @@ pub fn plus<T: Number>(a: &[T; STATE], b: &[T; STATE]) -> [T; STATE] {
     array::from_fn(|i| a[i] + b[i])
 }
 
-/// All values of all coordinates.
-pub fn hull(a: &Family) -> State {
-    a.map(Taylor::hull)
-}
-
 /// Coordinates of a box in directions that turn with the flow, so that boxes do not grow by being wrapped in boxes (R. Lohner, 1987).
 ///
 /// The directions are the columns of `S⁻¹ Q` with a nearly orthogonal `Q` and a diagonal `S` of powers of two, exact as factors.
@@ -58,8 +55,7 @@ impl Frame {
 
     /// Directions near the columns of a matrix, the one with the largest column times `weights` first, orthogonal once scaled.
     pub fn along(columns: &Matrix, weights: &[f64; STATE], scales: [f64; STATE]) -> Self {
-        let entry = |i: usize, j: usize| scales[i] * columns[i][j].mid() * weights[j];
-        let all = SMatrix::<f64, STATE, STATE>::from_fn(entry);
+        let all = SMatrix::<f64, STATE, STATE>::from_fn(|i, j| scales[i] * columns[i][j].mid() * weights[j]);
         let mut order: [usize; STATE] = array::from_fn(|j| j);
         order.sort_by(|a, b| all.column(*b).norm().total_cmp(&all.column(*a).norm()));
         let sorted = SMatrix::<f64, STATE, STATE>::from_fn(|i, j| all[(i, order[j])]);

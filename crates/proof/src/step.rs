@@ -1,10 +1,9 @@
 //! One validated step of the motions from a set of states, together with their derivatives by the first state.
 
-use crate::Interval;
 use crate::equations::{Flow, Mode, at};
 use crate::number::{Family, Gradient, Number, STATE, State};
-use crate::small::{Frame, Matrix, hull, identity, matrix, plus, times, times_vector};
-use crate::taylor::Taylor;
+use crate::small::{Frame, Matrix, identity, matrix, plus, times, times_vector};
+use crate::{Interval, Taylor};
 use std::array;
 
 /// Terms of a Taylor polynomial: the first power that is left out.
@@ -115,7 +114,7 @@ pub fn step(flow: Flow<'_>, states: &States, h: Taylor, order: usize) -> Option<
     }
     let during = Interval::new(0.0, length.hi());
     let all = states.all();
-    let e = enclosure(flow, &hull(&all), during)?;
+    let e = enclosure(flow, &all.map(Taylor::hull), during)?;
     let within = derivatives_within(flow, &e, during)?;
     let rough = flow.series(&Gradient::coordinates(&e), order);
     let (anywhere, power) = in_shares(&rough, length);

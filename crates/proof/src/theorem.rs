@@ -1,14 +1,11 @@
 //! The proof: Krawczyk's operator, stability, and largest values.
 
-use crate::equations::Equations;
-use crate::event::Event;
 use crate::largest::{Largest, largest};
 use crate::number::FREE;
 use crate::orbit::{Closed, Orbit, Residual};
 use crate::segment::Node;
 use crate::stability::{Stability, stability};
-use crate::taylor::Taylor;
-use crate::{Failure, Interval};
+use crate::{Equations, Event, Failure, Interval, Taylor};
 use retune_model::{Scene, Side};
 use serde::Serialize;
 
@@ -56,7 +53,7 @@ pub struct Theorem {
 /// See [`Failure`].
 pub fn prove(scene: &Scene, start: [f64; 4], periods: usize) -> Result<Theorem, Failure> {
     let equations = Equations::new(scene)?;
-    let closed = Orbit::guess(&equations, start, periods, true)?.improved(&equations)?;
+    let closed = Orbit::guess(&equations, (start, periods), true)?.improved(&equations)?;
     let (alone, mut away) = alone(&equations, &closed, &TRIED, WIDEST)?;
     let orbit = &closed.orbit;
     let mut known = orbit.residual(&equations, &away)?;
@@ -102,7 +99,7 @@ pub fn alone(
                 if image.iter().zip(&away).all(|(image, away)| image.is_inside(*away)) {
                     return Ok((away, image));
                 }
-                failure = Failure::Krawczyk { width: width(&away), image: width(&image) };
+                failure = Failure::Krawczyk(width(&away), width(&image));
             }
         }
     }
