@@ -19,6 +19,12 @@ periodic motion with at most so much energy. The JSON files have the pieces with
 | file | omega, rad/s | pieces | E1max is at most, J | proven, share of the band | not proven, rad/s |
 | --- | --- | --- | --- | --- | --- |
 """
+# The files of the hedged damper, by the restitution of its contacts.
+HEDGED = {"0.6": "", "0.7": "-0.7", "0.8": "-0.8", "0.9": "-0.9", "1": "-lossless"}
+HOLES = (
+    "of these nothing was tried over the parts from {}: periods of its motions double on towards the first of them and, from above, towards the last, and from about 7.715 to "
+    "7.825 rad/s [`retune branches`](../branches/tuned/README.md) knows no stable periodic motion"
+)
 INTERVALS = """
 ## Motions
 
@@ -82,10 +88,42 @@ def row(name, proof):
     return f"| [{name}]({name}) | {a:g} to {b:g} | {len(proof['pieces'])} | {upwards(proof['E1max'][1])} | {proven} | {shown or 'none'} |\n"
 
 
+def rounded(parts):
+    return ", ".join(f"{a:.7g} to {b:.7g}" for a, b in parts)
+
+
+def width(parts):
+    """No less than it is."""
+    return f"{math.ceil(sum(b - a for a, b in parts) * 1e6) / 1e6:.6f}"
+
+
+def tuned(proofs):
+    """What the bands of the tuned damper say together, and what lies between them."""
+    own = sorted((proof for name, proof in proofs.items() if name.startswith("ssvi") and "hedged" not in name), key=lambda p: p["omega"])
+    holes = [(a["omega"][1], b["omega"][0]) for a, b in zip(own, own[1:]) if a["omega"][1] < b["omega"][0]]
+    left = sorted(holes + [tuple(part["omega"]) for proof in own for part in proof["left_out"]])
+    (a, b), most = (own[0]["omega"][0], own[-1]["omega"][1]), max(proof["E1max"][1] for proof in own)
+    text = f"- The tuned damper: at each omega from {a:g} to {b:g} rad/s but for {len(left)} parts, {width(left)} rad/s in all, a stable motion with an E1max of at most {upwards(most)} J"
+    return text + (f"; {HOLES.format(rounded(holes))}.\n" if holes else ".\n")
+
+
+def hedged(proofs):
+    """What those of the hedged one say together."""
+    own = {e: proofs[f"ssvi-hedged{end}.json"] for e, end in HEDGED.items() if f"ssvi-hedged{end}.json" in proofs}
+    left = {e: [part["omega"] for part in proof["left_out"]] for e, proof in own.items()}
+    (a, b), most = own["0.6"]["omega"], max(proof["E1max"][1] for proof in own.values())
+    named = "; ".join(f"{rounded(parts)} at {e}" for e, parts in left.items() if parts)
+    all_of = "each restitution" if len(own) == len(HEDGED) else "some restitutions"
+    text = f"- The hedged damper: at {all_of} of its objective, {', '.join(own)}, and each omega from {a:g} to {b:g} rad/s, "
+    text += f"but for {width(sum(left.values(), []))} rad/s in all ({named}), " if named else ""
+    return text + f"a stable motion with an E1max of at most {upwards(most)} J.\n"
+
+
 def main():
     proofs = {file.name: json.loads(file.read_text()) for file in sorted(PLACE.glob("*.json"))}
     faults = [fault for name, proof in proofs.items() for fault in cover(name, proof)]
     text = HEAD + "".join(row(name, proof) for name, proof in proofs.items())
+    text += "\n## Together\n\n" + tuned(proofs) + hedged(proofs)
     text += INTERVALS + "".join(interval(name, *part) for name, proof in proofs.items() for part in intervals(proof))
     if "--write" in sys.argv:
         README.write_text(text)
