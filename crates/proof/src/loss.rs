@@ -109,4 +109,16 @@ mod tests {
             assert!(chi.wider(1e-14 * own).contains(own) && chi.width() < 1e-12 * own, "{e}: {own} {chi}");
         }
     }
+
+    /// Langevin's function grows: at the ends of `a = χ (1 + e)/2` it is below and above what it is to be.
+    #[test]
+    fn exact_langevins_function_is_below_and_above_at_the_ends_of_chi() {
+        for e in [0.2, 0.25, 0.3, 0.5, 0.6, 0.7, 0.75, 0.8, 0.9, 0.99] {
+            let e = Interval::decimal(e);
+            let a = chi(e).expect("a number") * (Interval::ONE + e) / Interval::point(2.0);
+            let wanted = (Interval::ONE - e) / (Interval::ONE + e);
+            assert!((wanted - langevin(a.lo())).is_positive(), "{e}: {a}");
+            assert!((langevin(a.hi()) - wanted).is_positive(), "{e}: {a}");
+        }
+    }
 }
