@@ -22,9 +22,17 @@ periodic motion with at most so much energy. The JSON files have the pieces with
 # The files of the hedged damper, by the restitution of its contacts.
 HEDGED = {"0.6": "", "0.7": "-0.7", "0.8": "-0.8", "0.9": "-0.9", "1": "-lossless"}
 HOLES = (
-    "of these nothing was tried over the parts from {}: periods of its motions double on towards the first of them and, from above, towards the last, and from about 7.715 to "
-    "7.825 rad/s [`retune branches`](../branches/tuned/README.md) knows no stable periodic motion"
+    "no band was proven over {}. There [`retune branches`](../branches/tuned/README.md) knows stable periodic motions of 4 periods up to 7.71196 rad/s, of 12 from 7.71476 to "
+    "7.71516, of 8 from 7.82535 to 7.85369 and of 4 beyond, and none from 7.71516 to 7.82535; bands of motions of 8 and 12 periods were not run to their end"
 )
+SINGLE = """
+## Single frequencies
+
+Where no band was proven: what `retune prove` says of the motion that the run from rest settles on.
+
+| file | omega, rad/s | periods | impacts | stable, all multipliers below | E1max is at most, J |
+| --- | --- | --- | --- | --- | --- |
+"""
 INTERVALS = """
 ## Motions
 
@@ -97,13 +105,24 @@ def width(parts):
     return f"{math.ceil(sum(b - a for a, b in parts) * 1e6) / 1e6:.6f}"
 
 
+def single(file):
+    """A row of a motion at one frequency."""
+    proof = json.loads(file.read_text())
+    stable = proof["stability"]["stable"] if isinstance(proof["stability"], dict) else "not proven"
+    name = f"single/{file.name}"
+    return f"| [{name}]({name}) | {proof['omega']:g} | {proof['periods']} | {proof['impacts']} | {stable} | {upwards(proof['largest']['E1max'][1])} |\n"
+
+
 def tuned(proofs):
     """What the bands of the tuned damper say together, and what lies between them."""
     own = sorted((proof for name, proof in proofs.items() if name.startswith("ssvi") and "hedged" not in name), key=lambda p: p["omega"])
     holes = [(a["omega"][1], b["omega"][0]) for a, b in zip(own, own[1:]) if a["omega"][1] < b["omega"][0]]
-    left = sorted(holes + [tuple(part["omega"]) for proof in own for part in proof["left_out"]])
     (a, b), most = (own[0]["omega"][0], own[-1]["omega"][1]), max(proof["E1max"][1] for proof in own)
-    text = f"- The tuned damper: at each omega from {a:g} to {b:g} rad/s but for {len(left)} parts, {width(left)} rad/s in all, a stable motion with an E1max of at most {upwards(most)} J"
+    left, at = [], a
+    for start, end in sorted(piece["omega"] for proof in own for piece in proof["pieces"]):
+        left += [(at, start)] if start > at else []
+        at = max(at, end)
+    text = f"- The tuned damper: at each omega from {a:g} to {b:g} rad/s but for {len(left)} parts, {width(left)} rad/s in all ({rounded(left)}), a stable motion with an E1max of at most {upwards(most)} J"
     return text + (f"; {HOLES.format(rounded(holes))}.\n" if holes else ".\n")
 
 
@@ -125,6 +144,7 @@ def main():
     text = HEAD + "".join(row(name, proof) for name, proof in proofs.items())
     text += "\n## Together\n\n" + tuned(proofs) + hedged(proofs)
     text += INTERVALS + "".join(interval(name, *part) for name, proof in proofs.items() for part in intervals(proof))
+    text += SINGLE + "".join(single(file) for file in sorted((PLACE / "single").glob("*.json")))
     if "--write" in sys.argv:
         README.write_text(text)
     elif README.read_text() != text:
