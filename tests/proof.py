@@ -19,6 +19,20 @@ periodic motion with at most so much energy. The JSON files have the pieces with
 | file | omega, rad/s | pieces | E1max is at most, J | proven, share of the band | not proven, rad/s |
 | --- | --- | --- | --- | --- | --- |
 """
+# The files of the hedged damper, by the restitution of its contacts.
+HEDGED = {"0.6": "", "0.7": "-0.7", "0.8": "-0.8", "0.9": "-0.9", "1": "-lossless"}
+HOLES = (
+    "no band was proven over {}. There [`retune branches`](../branches/tuned/README.md) knows stable periodic motions of 4 periods up to 7.71196 rad/s, of 12 from 7.71476 to "
+    "7.71516, of 8 from 7.82535 to 7.85369 and of 4 beyond, and none from 7.71516 to 7.82535; bands of motions of 8 and 12 periods were not run to their end"
+)
+SINGLE = """
+## Single frequencies
+
+Where no band was proven: what `retune prove` says of the motion that the run from rest settles on.
+
+| file | omega, rad/s | periods | impacts | stable, all multipliers below | E1max is at most, J |
+| --- | --- | --- | --- | --- | --- |
+"""
 INTERVALS = """
 ## Motions
 
@@ -82,11 +96,55 @@ def row(name, proof):
     return f"| [{name}]({name}) | {a:g} to {b:g} | {len(proof['pieces'])} | {upwards(proof['E1max'][1])} | {proven} | {shown or 'none'} |\n"
 
 
+def rounded(parts):
+    return ", ".join(f"{a:.7g} to {b:.7g}" for a, b in parts)
+
+
+def width(parts):
+    """No less than it is."""
+    return f"{math.ceil(sum(b - a for a, b in parts) * 1e6) / 1e6:.6f}"
+
+
+def single(file):
+    """A row of a motion at one frequency."""
+    proof = json.loads(file.read_text())
+    stable = proof["stability"]["stable"] if isinstance(proof["stability"], dict) else "not proven"
+    name = f"single/{file.name}"
+    return f"| [{name}]({name}) | {proof['omega']:g} | {proof['periods']} | {proof['impacts']} | {stable} | {upwards(proof['largest']['E1max'][1])} |\n"
+
+
+def tuned(proofs):
+    """What the bands of the tuned damper say together, and what lies between them."""
+    own = sorted((proof for name, proof in proofs.items() if name.startswith("ssvi") and "hedged" not in name), key=lambda p: p["omega"])
+    holes = [(a["omega"][1], b["omega"][0]) for a, b in zip(own, own[1:]) if a["omega"][1] < b["omega"][0]]
+    (a, b), most = (own[0]["omega"][0], own[-1]["omega"][1]), max(proof["E1max"][1] for proof in own)
+    left, at = [], a
+    for start, end in sorted(piece["omega"] for proof in own for piece in proof["pieces"]):
+        left += [(at, start)] if start > at else []
+        at = max(at, end)
+    text = f"- The tuned damper: at each omega from {a:g} to {b:g} rad/s but for {len(left)} parts, {width(left)} rad/s in all ({rounded(left)}), a stable motion with an E1max of at most {upwards(most)} J"
+    return text + (f"; {HOLES.format(rounded(holes))}.\n" if holes else ".\n")
+
+
+def hedged(proofs):
+    """What those of the hedged one say together."""
+    own = {e: proofs[f"ssvi-hedged{end}.json"] for e, end in HEDGED.items() if f"ssvi-hedged{end}.json" in proofs}
+    left = {e: [part["omega"] for part in proof["left_out"]] for e, proof in own.items()}
+    (a, b), most = own["0.6"]["omega"], max(proof["E1max"][1] for proof in own.values())
+    named = "; ".join(f"{rounded(parts)} at {e}" for e, parts in left.items() if parts)
+    all_of = "each restitution" if len(own) == len(HEDGED) else "some restitutions"
+    text = f"- The hedged damper: at {all_of} of its objective, {', '.join(own)}, and each omega from {a:g} to {b:g} rad/s, "
+    text += f"but for {width(sum(left.values(), []))} rad/s in all ({named}), " if named else ""
+    return text + f"a stable motion with an E1max of at most {upwards(most)} J.\n"
+
+
 def main():
     proofs = {file.name: json.loads(file.read_text()) for file in sorted(PLACE.glob("*.json"))}
     faults = [fault for name, proof in proofs.items() for fault in cover(name, proof)]
     text = HEAD + "".join(row(name, proof) for name, proof in proofs.items())
+    text += "\n## Together\n\n" + tuned(proofs) + hedged(proofs)
     text += INTERVALS + "".join(interval(name, *part) for name, proof in proofs.items() for part in intervals(proof))
+    text += SINGLE + "".join(single(file) for file in sorted((PLACE / "single").glob("*.json")))
     if "--write" in sys.argv:
         README.write_text(text)
     elif README.read_text() != text:

@@ -1,14 +1,10 @@
 //! A whole band of frequencies: pieces of it, over each of which one family of motions is proven at once.
 
-use crate::equations::Equations;
-use crate::inverse::Inverse;
 use crate::largest::{Largest, largest};
-use crate::number::{STATE, State};
-use crate::orbit::{Orbit, Residual};
+use crate::orbit::{Closed, Guess, Orbit};
 use crate::stability::{Stability, stability};
-use crate::taylor::Taylor;
-use crate::theorem::{about, impacts, is_inside, krawczyk, width};
-use crate::{Failure, Interval};
+use crate::theorem::{alone, impacts};
+use crate::{Equations, Failure, Interval, Taylor};
 use retune_model::Scene;
 use serde::Serialize;
 
@@ -58,8 +54,8 @@ pub struct LeftOut {
     pub why: Failure,
 }
 
-/// A state at a crest of the force at a frequency, and after how many periods it repeats.
-pub type Guesses<'a> = &'a dyn Fn(f64) -> Option<([f64; 4], usize)>;
+/// A guess at a frequency.
+pub type Guesses<'a> = &'a dyn Fn(f64) -> Option<Guess>;
 
 /// Proves stable motions with an E1max of at most `most` (J) over a band, as far as it can. A motion is followed from piece to piece, which need not be one branch:
 /// where it is lost, a new one is guessed beyond, and followed to both sides.
@@ -120,11 +116,7 @@ impl Band {
 }
 
 /// The family of a piece, with the frequency in its middle and half its width.
-#[derive(Clone)]
-struct Last {
-    orbit: Orbit,
-    omega: [f64; 2],
-}
+type Last = (Orbit, [f64; 2]);
 
 /// What is to be proven.
 struct Task<'a> {
@@ -139,8 +131,8 @@ type March = (Vec<Piece>, Option<Last>, Option<(f64, Failure)>);
 impl Task<'_> {
     /// Pieces from a frequency up or down to another one, from a family next to them or a guess.
     fn march(&self, [from, to]: [f64; 2], longest: f64, beside: Option<Last>) -> March {
-        let (mut pieces, mut first, mut at, mut length) = (Vec::new(), None, from, longest);
-        let mut last = beside;
+        let (mut pieces, mut first, mut last) = (Vec::new(), None, beside);
+        let (mut at, mut length) = (from, longest);
         while at != to {
             let end = if (to - at).abs() <= 1.01 * length { to } else { at + length.copysign(to - at) };
             let omega = [at.min(end), at.max(end)];
@@ -151,12 +143,10 @@ impl Task<'_> {
                     (at, last, length) = (end, Some(own), (LONGER * (end - at).abs()).min(LONGEST));
                 }
                 // All motions of the piece have more.
-                Err(why @ Failure::Above { least, .. }) if least > self.most => {
+                Err(why) if matches!(why, Failure::Above(energy, most) if energy.lo() > most) => {
                     return (pieces, first, Some((end, why)));
                 }
-                Err(why) if (end - at).abs() <= SHORTEST => {
-                    return (pieces, first, Some((at, why)));
-                }
+                Err(why) if (end - at).abs() <= SHORTEST => return (pieces, first, Some((at, why))),
                 Err(_) => length = SHORTER * (end - at).abs(),
             }
         }
@@ -167,17 +157,13 @@ impl Task<'_> {
     fn motion(&self, omega: f64, last: Option<&Last>) -> Result<Orbit, Failure> {
         let equations = self.equations.at(Taylor::point(omega));
         let start = match last {
-            Some(last) => last.orbit.member(&equations, (omega - last.omega[0]) / last.omega[1])?,
-            None => {
-                let (state, periods) = (self.guesses)(omega).ok_or(Failure::NoGuess)?;
-                Orbit::guess(&equations, state, periods, false)?
-            }
+            Some((orbit, [middle, half])) => orbit.member(&equations, (omega - middle) / half)?,
+            None => Orbit::guess(&equations, (self.guesses)(omega).ok_or(Failure::NoGuess)?, false)?,
         };
-        let (orbit, _) = start.improved(&equations)?;
-        let known = orbit.residual(&equations, &vec![[Interval::ZERO; STATE]; orbit.nodes.len()])?;
-        match stability(&orbit, &known.passages) {
+        let Closed { orbit, known, .. } = start.improved(&equations)?;
+        match stability(&known.passages) {
             Stability::Stable(_) => Ok(orbit),
-            Stability::Unstable | Stability::Open => Err(Failure::NotStable),
+            _ => Err(Failure::NotStable),
         }
     }
 
@@ -187,43 +173,20 @@ impl Task<'_> {
         let half = (Interval::new(omega[0], omega[1]) - Interval::point(middle)).magnitude();
         let orbit = self.motion(middle, last)?;
         let equations = self.equations.at(Taylor::line(middle, half));
-        let (orbit, inverse, known) = orbit.widened(&equations)?;
-        let boxes = family(&equations, &orbit, &inverse, &known)?;
+        let closed = orbit.widened(&equations)?;
+        let (_, boxes) = alone(&equations, &closed, &TRIED, f64::INFINITY)?;
+        let Closed { orbit, .. } = closed;
         let known = orbit.residual(&equations, &boxes)?;
-        let Stability::Stable(multipliers) = stability(&orbit, &known.passages) else {
+        let Stability::Stable(multipliers) = stability(&known.passages) else {
             return Err(Failure::NotStable);
         };
         let largest = largest(&equations, &known.passages);
         if largest.energy.hi() > self.most {
-            let [least, bound] = [largest.energy.lo(), largest.energy.hi()];
-            return Err(Failure::Above { least, bound, most: self.most });
+            return Err(Failure::Above(largest.energy, self.most));
         }
-        let (periods, impacts) = (orbit.periods, impacts(&orbit));
-        let piece = Piece { omega, periods, impacts, largest, multipliers };
-        Ok((piece, Last { orbit, omega: [middle, half] }))
+        let piece = Piece { omega, periods: orbit.periods, impacts: impacts(&orbit), largest, multipliers };
+        Ok((piece, (orbit, [middle, half])))
     }
-}
-
-/// The boxes about a family that hold exactly one motion for each value of its parameter, from what the equations leave of the family alone.
-fn family(
-    equations: &Equations,
-    orbit: &Orbit,
-    inverse: &Inverse,
-    alone: &Residual,
-) -> Result<Vec<State>, Failure> {
-    let none = vec![[Interval::ZERO; STATE]; orbit.nodes.len()];
-    let least = krawczyk(orbit, inverse, alone, &none);
-    let mut failure = Failure::Sequence;
-    for times in TRIED {
-        let boxes = about(orbit, &least, times, f64::INFINITY);
-        let known = orbit.residual(equations, &boxes)?;
-        let image = krawczyk(orbit, inverse, &known, &boxes);
-        if is_inside(orbit, &image, &boxes) {
-            return Ok(image);
-        }
-        failure = Failure::Krawczyk { width: width(&boxes), image: width(&image) };
-    }
-    Err(failure)
 }
 
 #[cfg(test)]
@@ -241,26 +204,20 @@ mod tests {
         let scene: Scene = serde_json::from_str(text).expect("a scene");
         let (omega, half) = (6.62, 5e-3);
         let equations = Equations::new(&scene).expect("equations");
-        let alone = equations.at(Taylor::point(omega));
-        let guess = Orbit::guess(&alone, [-0.0282, 0.608, 0.183, -1.121], 1, false).expect("a guess");
-        let (orbit, _) = guess.improved(&alone).expect("a motion");
+        let single = equations.at(Taylor::point(omega));
+        let guess = Orbit::guess(&single, ([-0.0282, 0.608, 0.183, -1.121], 1), false).expect("a guess");
         let wide = equations.at(Taylor::line(omega, half));
-        let (orbit, inverse, known) = orbit.widened(&wide).expect("a family");
-        let boxes = family(&wide, &orbit, &inverse, &known).expect("a proof");
+        let closed = guess.improved(&single).and_then(|own| own.orbit.widened(&wide)).expect("a family");
+        let (_, boxes) = alone(&wide, &closed, &TRIED, f64::INFINITY).expect("a proof");
         for end in [-1.0, 1.0] {
             let there = equations.at(Taylor::point(omega + half * end));
-            let (own, _) = orbit.member(&there, end).and_then(|own| own.improved(&there)).expect("a motion");
-            for (k, node) in orbit.nodes.iter().enumerate() {
-                for i in node.event.free() {
-                    let off = own.nodes[k].state[i].mid() - node.state[i].near(end);
-                    assert!(boxes[k][i].wider(1e-12).contains(off), "{k} {i}: {off:e} {}", boxes[k][i]);
-                    let way = own.nodes[k].state[i].mid() - node.state[i].mid();
-                    assert!(
-                        boxes[k][i].magnitude() < 1e-6 * way.abs() + 1e-10,
-                        "{k} {i}: {way:e} {}",
-                        boxes[k][i]
-                    );
-                }
+            let own =
+                closed.orbit.member(&there, end).and_then(|own| own.improved(&there)).expect("a motion");
+            for ((own, family), held) in own.orbit.unknowns().zip(closed.orbit.unknowns()).zip(&boxes) {
+                let off = own.mid() - family.near(end);
+                assert!(held.wider(1e-12).contains(off), "{family:?}: {off:e} {held}");
+                let way = own.mid() - family.mid();
+                assert!(held.magnitude() < 1e-6 * way.abs() + 1e-10, "{family:?}: {way:e} {held}");
             }
         }
     }

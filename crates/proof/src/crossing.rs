@@ -1,11 +1,11 @@
 //! Where motions cross a section: a wall, the end of a contact, or a crest of the force.
 
-use crate::Interval;
-use crate::equations::{Equations, Mode};
+use crate::equations::Flow;
 use crate::number::Family;
-use crate::small::{Matrix, hull, times};
+use crate::small::{Matrix, matrix, times};
 use crate::step::{States, derivatives_within, enclosure};
-use crate::taylor::Taylor;
+use crate::{Event, Interval, Taylor};
+use std::array;
 
 /// Attempts to enclose the time of a crossing.
 const ATTEMPTS: usize = 12;
@@ -23,38 +23,37 @@ pub struct Crossing {
     pub delay: Interval,
 }
 
-/// A section: where a coordinate has a value, and comes there rising or falling.
+/// A section: where a coordinate has the value of an event.
 #[derive(Clone, Copy, Debug)]
 pub struct Section {
-    /// The coordinate.
-    pub index: usize,
+    /// The event.
+    pub event: Event,
     /// The value.
     pub value: Interval,
-    /// Whether it rises.
-    pub is_rising: bool,
+}
+
+impl Section {
+    /// Whether a change of the coordinate leads to the section.
+    pub fn is_towards(&self, change: Interval) -> bool {
+        if self.event.is_rising() { change.is_positive() } else { change.is_negative() }
+    }
 }
 
 /// The crossing by all states, which are near the section. None if a motion may come to it too slowly.
-pub fn cross(equations: &Equations, mode: Mode, states: &States, section: &Section) -> Option<Crossing> {
-    let start = states.centre();
-    let (delay, _, slopes) = reach(equations, mode, &start, section)?;
-    let mut centre: Family = std::array::from_fn(|i| start[i] + delay * slopes[i]);
-    centre[section.index] = Taylor::from(section.value);
+pub fn cross(flow: Flow<'_>, states: &States, section: &Section) -> Option<Crossing> {
+    let (start, fixed) = (states.centre(), section.event.fixed());
+    let (delay, _, slopes) = reach(flow, &start, section)?;
+    let mut centre: Family = array::from_fn(|i| start[i] + delay * slopes[i]);
+    centre[fixed] = Taylor::from(section.value);
 
-    let (delay, near, slopes) = reach(equations, mode, &states.all(), section)?;
+    let (delay, near, slopes) = reach(flow, &states.all(), section)?;
     let delay = delay.hull();
-    let within = derivatives_within(equations, mode, &hull(&near), delay.hull(Interval::ZERO))?;
+    let within = derivatives_within(flow, &near.map(Taylor::hull), delay.hull(Interval::ZERO))?;
     let by = times(&within.map(|row| row.map(Taylor::from)), &states.by);
     // The time of crossing changes by minus the change of the coordinate over its slope.
-    let per_slope = slopes[section.index].reciprocal();
-    let on = |i: usize, j: usize| {
-        if i == section.index {
-            Taylor::ZERO
-        } else {
-            by[i][j] - slopes[i] * per_slope * by[section.index][j]
-        }
-    };
-    let by = std::array::from_fn(|i| std::array::from_fn(|j| on(i, j)));
+    let per_slope = slopes[fixed].reciprocal();
+    let on = |i: usize, j: usize| by[i][j] - slopes[i] * per_slope * by[fixed][j];
+    let by = matrix(|i, j| if i == fixed { Taylor::ZERO } else { on(i, j) });
     Some(Crossing { centre, by, near, delay })
 }
 
@@ -62,27 +61,20 @@ pub fn cross(equations: &Equations, mode: Mode, states: &States, section: &Secti
 ///
 /// By the mean value theorem a coordinate `g` that is `g(0)` off its value is there after `-g(0)/g'` for some `g'` on the way (interval
 /// Newton); if that is in the stretch for which the way was enclosed, each motion crosses in it, and once, as `g'` has one sign.
-fn reach(
-    equations: &Equations,
-    mode: Mode,
-    start: &Family,
-    section: &Section,
-) -> Option<(Taylor, Family, Family)> {
-    let off = start[section.index] - Taylor::from(section.value);
+fn reach(flow: Flow<'_>, start: &Family, section: &Section) -> Option<(Taylor, Family, Family)> {
+    let off = start[section.event.fixed()] - Taylor::from(section.value);
     let newton = |slopes: &Family| {
-        let slope = slopes[section.index];
-        let is_right =
-            if section.is_rising { slope.hull().is_positive() } else { slope.hull().is_negative() };
-        is_right.then(|| -(off * slope.reciprocal()))
+        let slope = slopes[section.event.fixed()];
+        section.is_towards(slope.hull()).then(|| -(off * slope.reciprocal()))
     };
-    let mut delay = newton(&equations.derivative(mode, start))?.hull();
+    let mut delay = newton(&flow.derivative(start))?.hull();
     for _ in 0..ATTEMPTS {
         let tried = delay.wider(0.1 * delay.width() + f64::MIN_POSITIVE);
         let way = tried.hull(Interval::ZERO);
         // All of the family, then each of its motions.
-        let rough = equations.derivative(mode, &enclosure(equations, mode, &hull(start), way)?);
-        let near: Family = std::array::from_fn(|i| start[i] + Taylor::from(way * rough[i]));
-        let slopes = equations.derivative(mode, &near);
+        let rough = flow.derivative(&enclosure(flow, &start.map(Taylor::hull), way)?);
+        let near: Family = array::from_fn(|i| start[i] + Taylor::from(way * rough[i]));
+        let slopes = flow.derivative(&near);
         let next = newton(&slopes)?;
         if next.hull().is_in(tried) {
             return Some((next, near, slopes));
@@ -95,6 +87,7 @@ fn reach(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::equations::Mode;
     use crate::number::STATE;
     use crate::small::identity;
     use retune_model::Side;
@@ -104,14 +97,17 @@ mod tests {
     fn contract_a_crossing_has_a_slope_of_the_right_sign() {
         let equations = crate::step::tests::scene();
         for (side, sign) in [(Side::Obstacle, 1.0), (Side::Primary, -1.0)] {
-            let value = equations.wall(side).expect("a wall");
-            let section = Section { index: 0, value, is_rising: sign > 0.0 };
+            let value = equations.walls[side as usize];
+            let (section, flow) = (
+                Section { event: Event::Touch(side), value },
+                Flow { equations: &equations, mode: Mode::Flight },
+            );
             for (speed, away, is_crossed) in [(0.5, 1e-3, true), (-0.5, 1e-3, false), (0.5, 0.6, false)] {
                 let mut box_of = [Interval::ZERO; STATE];
                 box_of[1] = Interval::around_zero(away);
                 let start = [value.mid() - sign * 1e-9, sign * speed, 0.05, 0.3, 1.0, 0.0].map(Taylor::point);
                 let states = States::first(&start, box_of, identity());
-                let found = cross(&equations, Mode::Flight, &states, &section);
+                let found = cross(flow, &states, &section);
                 assert_eq!(found.is_some(), is_crossed, "{side:?} {speed} {away}");
                 // In time to come: 1 nm at 0.5 m/s.
                 assert!(found.is_none_or(|found| (found.delay.mid() - 2e-9).abs() < 1e-11), "{side:?}");

@@ -8,9 +8,9 @@
 use crate::elementary::pi;
 use crate::loss::Factor;
 use crate::number::{Number, SPEED, STATE};
-use crate::taylor::Taylor;
-use crate::{Failure, Interval};
+use crate::{Event, Failure, Interval, Taylor};
 use retune_model::{Contact, Scene, Side, Source, Surfaces};
+use std::array;
 
 /// The numbers of a scene.
 #[derive(Clone, Debug)]
@@ -19,27 +19,26 @@ pub struct Equations {
     pub omega: Taylor,
     /// m1.
     pub m1: Interval,
+    /// c1.
+    c1: Interval,
     /// k1.
     pub k1: Interval,
+    /// m2, c2, k2.
+    m2: Interval,
+    c2: Interval,
+    k2: Interval,
     /// D.
     pub rest: Interval,
-    /// Where the walls are; none of a damper without.
-    pub walls: Option<[Interval; 2]>,
+    /// Where the walls are; anywhere if there are none.
+    pub walls: [Interval; 2],
     /// K1, K3.
     pub hertz: [Interval; 2],
     /// What the contacts lose.
     pub factors: [Factor; 2],
     /// Powers of two that make the coordinates alike: roots of energies, which damping lets fall.
     pub scales: [f64; STATE],
-    /// 1/m1, c1/m1, k1/m1.
-    inverse_m1: Interval,
-    damping: Interval,
-    stiffness: Interval,
-    /// The force over m1, as weights of `[cos φ, ω² cos φ, ω sin φ]`.
+    /// The force, as weights of `[cos φ, ω² cos φ, ω sin φ]`.
     force: [Interval; 3],
-    inverse_m2: Interval,
-    c2: Interval,
-    k2: Interval,
 }
 
 /// What the damper does.
@@ -51,6 +50,15 @@ pub enum Mode {
     Contact(Side),
 }
 
+/// The equations while the damper does one thing.
+#[derive(Clone, Copy, Debug)]
+pub struct Flow<'a> {
+    /// The numbers.
+    pub equations: &'a Equations,
+    /// What it does.
+    pub mode: Mode,
+}
+
 impl Equations {
     /// The equations of a scene, each number of which is the decimal that a file has, not the double nearest to it.
     ///
@@ -59,55 +67,38 @@ impl Equations {
     pub fn new(scene: &Scene) -> Result<Self, Failure> {
         let number = Interval::decimal;
         let damper = scene.damper.as_ref().ok_or(Failure::Scene("a scene without damper"))?;
-        let [m1, c1, k1] =
-            [scene.primary.mass.get(), scene.primary.damping.get(), scene.primary.stiffness.get()]
-                .map(number);
+        let of = &scene.primary;
+        let [m1, c1, k1] = [of.mass.get(), of.damping.get(), of.stiffness.get()].map(number);
+        let [m2, c2, k2] = [damper.mass.get(), damper.damping.get(), damper.stiffness.get()].map(number);
         let omega = number(scene.forcing.frequency.get());
         if !omega.is_positive() {
             return Err(Failure::Scene("a forcing whose omega is not above 0"));
         }
+        // k1 y + c1 dy/dt with y = Y cos φ.
+        let base = |y: Interval| [y * k1, Interval::ZERO, -(y * c1)];
         let force = match scene.forcing.source {
             Source::Force(p) => [number(p.get()), Interval::ZERO, Interval::ZERO],
             Source::Imbalance(me) => [Interval::ZERO, number(me.get()), Interval::ZERO],
-            // k1 y + c1 dy/dt with y = Y cos φ.
-            Source::Base(y) => [number(y.get()) * k1, Interval::ZERO, -(number(y.get()) * c1)],
-            // The same with Y = a / ω².
-            Source::BaseAcceleration(a) => {
-                let y = number(a.get()) / (omega * omega);
-                [y * k1, Interval::ZERO, -(y * c1)]
-            }
+            Source::Base(y) => base(number(y.get())),
+            Source::BaseAcceleration(a) => base(number(a.get()) / (omega * omega)),
             Source::Decay(_) => return Err(Failure::Scene("a free decay, which does not repeat")),
             Source::History(_) => {
                 return Err(Failure::Scene("a pulse or a record, under which no motion repeats"));
             }
         };
         let rest = number(damper.rest_distance.get());
-        let (hertz, factors) = match &damper.contact {
-            None => (None, [Factor::None; 2]),
+        let (walls, hertz, factors) = match &damper.contact {
+            None => ([Interval::ENTIRE; 2], [Interval::ZERO; 2], [Factor::None; 2]),
             Some(Contact::Rigid(_)) => return Err(Failure::Scene("rigid walls")),
             Some(Contact::Hertz(surfaces)) => {
                 let [a, b] = surfaces.losses();
-                (Some(hertz_stiffness(surfaces)), [Factor::new(&a)?, Factor::new(&b)?])
+                let walls = [Interval::ZERO, rest + number(damper.clearance.get())];
+                (walls, hertz_stiffness(surfaces), [Factor::new(&a)?, Factor::new(&b)?])
             }
         };
-        let inverse_m1 = Interval::ONE / m1;
-        Ok(Self {
-            omega: Taylor::from(omega),
-            m1,
-            k1,
-            rest,
-            walls: hertz.map(|_| [Interval::ZERO, rest + number(damper.clearance.get())]),
-            hertz: hertz.unwrap_or([Interval::ZERO; 2]),
-            factors,
-            scales: scales(m1 / number(damper.mass.get()), omega.square() + k1 * inverse_m1),
-            inverse_m1,
-            damping: c1 * inverse_m1,
-            stiffness: k1 * inverse_m1,
-            force: force.map(|part| part * inverse_m1),
-            inverse_m2: Interval::ONE / number(damper.mass.get()),
-            c2: number(damper.damping.get()),
-            k2: number(damper.stiffness.get()),
-        })
+        let scales = scales(m1 / m2, omega.square() + k1 * (Interval::ONE / m1));
+        let omega = Taylor::from(omega);
+        Ok(Self { omega, m1, c1, k1, m2, c2, k2, rest, walls, hertz, factors, scales, force })
     }
 
     /// The same at the frequencies of a function, exactly.
@@ -115,67 +106,59 @@ impl Equations {
         Self { omega, ..self.clone() }
     }
 
-    /// The position of a wall; none of a damper without.
-    pub fn wall(&self, side: Side) -> Option<Interval> {
-        self.walls.map(|walls| walls[side as usize])
+    /// `1/m1 + 1/m2`.
+    pub fn inverse_masses(&self) -> Interval {
+        Interval::ONE / self.m1 + Interval::ONE / self.m2
+    }
+}
+
+impl<'a> Flow<'a> {
+    /// That after an event.
+    pub fn after(equations: &'a Equations, event: Event) -> Self {
+        let mode = if let Event::Touch(side) = event { Mode::Contact(side) } else { Mode::Flight };
+        Self { equations, mode }
+    }
+
+    /// Towards which side the first coordinate is counted: minus one in a contact with the structure.
+    pub fn sign(self) -> Interval {
+        Interval::point(if let Mode::Contact(side) = self.mode { side.sign() } else { 1.0 })
     }
 
     /// The Taylor coefficients of the solution from a state, up to `order`: `[k][i]` is that of the power `k` of the coordinate `i`.
-    pub fn series<T: Number>(&self, mode: Mode, start: &[T; STATE], order: usize) -> Vec<[T; STATE]> {
-        let zero = T::constant(Interval::ZERO);
-        let (sign, stretch) = match mode {
-            Mode::Flight => (1.0, -self.rest),
-            Mode::Contact(side) => {
-                let wall = self.wall(side).unwrap_or(Interval::ENTIRE);
-                (side.sign(), Interval::point(side.sign()) * (wall - self.rest))
-            }
+    pub fn series<T: Number>(self, start: &[T; STATE], order: usize) -> Vec<[T; STATE]> {
+        let (own, sign, zero) = (self.equations, self.sign(), T::constant(Interval::ZERO));
+        let (stretch, mut contact) = match self.mode {
+            Mode::Flight => (-own.rest, None),
+            Mode::Contact(side) => (sign * (own.walls[side as usize] - own.rest), Some(Push::new(own, side))),
         };
-        let (sign, half) = (Interval::point(sign), Interval::point(0.5));
-        let mut y = vec![*start];
-        let omega = T::of(self.omega);
-        let force =
-            [T::constant(self.force[0]) + (omega * omega).times(self.force[1]), omega.times(self.force[2])];
-        let mut circle = vec![start[4].cos_sin()];
-        let mut contact = match mode {
-            Mode::Flight => None,
-            Mode::Contact(side) => Some(Push::new(self, side)),
-        };
+        let [per_m1, per_m2] = [own.m1, own.m2].map(|mass| Interval::ONE / mass);
+        let (omega, f) = (T::of(own.omega), own.force.map(|part| part * per_m1));
+        let force = [T::constant(f[0]) + (omega * omega).times(f[1]), omega.times(f[2])];
+        let (mut y, mut circle) = (vec![*start], vec![start[4].cos_sin()]);
         // Of a contact: the two accelerations, which are multiplied by dt/dθ = q, and that of the speed v.
         let mut accelerations: Vec<[T; 3]> = Vec::new();
         for k in 0..order {
             let [u, w, x1, v1, ..] = y[k];
             let [cos, sin] = circle[k];
-            let mut depth = u;
-            let mut push = w.times(self.c2);
+            let (mut depth, mut push) = (u, w.times(own.c2));
             if let Some(contact) = &mut contact {
                 contact.extend(&y);
-                depth = contact.squares[k];
-                push = push + contact.push[k];
+                (depth, push) = (contact.factors[0][k], push + contact.force[k]);
             }
-            push = push + depth.times(self.k2);
+            push = push + depth.times(own.k2);
             if k == 0 {
-                push = push + T::constant(self.k2 * stretch);
+                push = push + T::constant(own.k2 * stretch);
             }
             // m1 a1 = F - c1 v1 - k1 x1 + s push, and m2 a2 = -s push.
-            let a1 = cos * force[0] + sin * force[1] - v1.times(self.damping) - x1.times(self.stiffness)
-                + push.times(sign * self.inverse_m1);
-            let rate = zero - push.times(self.inverse_m2) - a1.times(sign);
+            let a1 = cos * force[0] + sin * force[1] - v1.times(own.c1 * per_m1) - x1.times(own.k1 * per_m1)
+                + push.times(sign * per_m1);
+            let rate = zero - push.times(per_m2) - a1.times(sign);
             let slopes = if let Some(contact) = &mut contact {
-                let others = rate + contact.push[k].times(self.inverse_m1 + self.inverse_m2);
+                let others = rate + contact.force[k].times(own.inverse_masses());
                 accelerations.push([rate, a1, contact.speeding(others)]);
-                let by_clock = |other: &dyn Fn(usize) -> T| product(k, zero, |i| y[i][0], other);
-                let speeding = match self.factors[contact.side as usize] {
-                    Factor::Restoring(_) => by_clock(&|i| accelerations[i][2]),
-                    _ => zero,
-                };
-                [
-                    w.times(half),
-                    by_clock(&|i| accelerations[i][0]),
-                    by_clock(&|i| y[i][3]),
-                    by_clock(&|i| accelerations[i][1]),
-                    u * omega,
-                    speeding,
-                ]
+                let by_clock = |other: &dyn Fn(usize) -> T| product(k, |i| y[i][0], other);
+                let [rate, a1, speeding] = [0, 1, 2].map(|j| by_clock(&|i| accelerations[i][j]));
+                [w.times(Interval::point(0.5)), rate, by_clock(&|i| y[i][3]), a1, u * omega, speeding]
             } else {
                 [w, rate, v1, a1, if k == 0 { omega } else { zero }, zero]
             };
@@ -186,7 +169,7 @@ impl Equations {
             let next = |of: usize| match &contact {
                 // In flight φ is linear.
                 None => circle[k][of] * turning(0),
-                Some(_) => product(k, zero, |i| circle[i][of], turning),
+                Some(_) => product(k, |i| circle[i][of], turning),
             };
             circle.push([next(1).times(-share), next(0).times(share)]);
         }
@@ -194,93 +177,71 @@ impl Equations {
     }
 
     /// The derivative of a state.
-    pub fn derivative<T: Number>(&self, mode: Mode, state: &[T; STATE]) -> [T; STATE] {
-        self.series(mode, state, 1)[1]
-    }
-
-    /// `1/m1 + 1/m2`.
-    pub fn inverse_masses(&self) -> Interval {
-        self.inverse_m1 + self.inverse_m2
+    pub fn derivative<T: Number>(self, state: &[T; STATE]) -> [T; STATE] {
+        self.series(state, 1)[1]
     }
 }
 
 /// The series of the force of a contact.
-pub struct Push<T> {
-    /// Which wall.
-    pub side: Side,
-    hertz: Interval,
-    factor: Factor,
-    /// `(4/5) K (1/m1 + 1/m2)`: `2 S = storing q⁵`.
-    storing: Interval,
-    /// `q²` and `q³`.
-    squares: Vec<T>,
-    cubes: Vec<T>,
-    /// `1/v`, `h = w/v`, and the factor `f`.
-    inverse_speed: Vec<T>,
-    stage: Vec<T>,
-    factors: Vec<T>,
+pub struct Push<'a, T> {
+    equations: &'a Equations,
+    side: Side,
+    /// The force.
+    pub force: Vec<T>,
+    /// `q²`, `q³`, `1/v`, `h = w/v`, and the factor `f`.
+    factors: [Vec<T>; 5],
     /// `q⁵`, `1/v²`, `q⁵/v²`, `D`, `1/D`, `h/D`, and the acceleration by others.
     denominator: [Vec<T>; 7],
-    /// The force.
-    pub push: Vec<T>,
 }
 
-impl<T: Number> Push<T> {
+impl<'a, T: Number> Push<'a, T> {
     /// Before its first term.
-    pub fn new(equations: &Equations, side: Side) -> Self {
-        let hertz = equations.hertz[side as usize];
-        Self {
-            side,
-            hertz,
-            factor: equations.factors[side as usize],
-            storing: Interval::point(4.0) / Interval::point(5.0) * hertz * equations.inverse_masses(),
-            squares: Vec::new(),
-            cubes: Vec::new(),
-            inverse_speed: Vec::new(),
-            stage: Vec::new(),
-            factors: Vec::new(),
-            denominator: std::array::from_fn(|_| Vec::new()),
-            push: Vec::new(),
-        }
+    pub fn new(equations: &'a Equations, side: Side) -> Self {
+        let none = |_| Vec::new();
+        let (factors, denominator) = (array::from_fn(none), array::from_fn(none));
+        Self { equations, side, force: Vec::new(), factors, denominator }
     }
 
     /// Adds the next term of all, where the motion has it.
     pub fn extend(&mut self, y: &[[T; STATE]]) {
-        let (k, zero) = (self.push.len(), T::constant(Interval::ZERO));
-        self.squares.push(product(k, zero, |i| y[i][0], |i| y[i][0]));
-        self.cubes.push(product(k, zero, |i| self.squares[i], |i| y[i][0]));
-        let one = if k == 0 { T::constant(Interval::ONE) } else { zero };
-        let push = match self.factor {
-            Factor::None => self.cubes[k],
-            Factor::Damping(lambda) => {
-                self.factors.push(one + y[k][1].times(lambda));
-                product(k, zero, |i| self.cubes[i], |i| self.factors[i])
-            }
+        let (k, one) = (self.force.len(), if self.force.is_empty() { Interval::ONE } else { Interval::ZERO });
+        let [squares, cubes, inverse_speed, stage, factors] = &mut self.factors;
+        squares.push(product(k, |i| y[i][0], |i| y[i][0]));
+        cubes.push(product(k, |i| squares[i], |i| y[i][0]));
+        let more = match self.equations.factors[self.side as usize] {
+            Factor::None => None,
+            Factor::Damping(lambda) => Some(y[k][1].times(lambda)),
             Factor::Restoring(chi) => {
-                quotient(&mut self.inverse_speed, |i| y[i][SPEED]);
-                self.stage.push(product(k, zero, |i| y[i][1], |i| self.inverse_speed[i]));
-                self.factors.push(one + self.stage[k].times(chi));
-                product(k, zero, |i| self.cubes[i], |i| self.factors[i])
+                quotient(inverse_speed, |i| y[i][SPEED]);
+                stage.push(product(k, |i| y[i][1], |i| inverse_speed[i]));
+                Some(stage[k].times(chi))
             }
         };
-        self.push.push(push.times(self.hertz));
+        factors.extend(more.map(|more| T::constant(one) + more));
+        let push = if more.is_some() { product(k, |i| cubes[i], |i| factors[i]) } else { cubes[k] };
+        self.force.push(push.times(self.equations.hertz[self.side as usize]));
     }
 
     /// The next term of `dv/dt = a h/D`, with the acceleration `a` into the wall that others than the contact cause, and `D = 2 f G + h²`, `G = S/v²`,
-    /// `S = (2/5) κ q⁵` (`docs/theory.md`, "One restitution at every speed"); zero of other contacts.
+    /// `S = (2/5) κ q⁵`, `κ = K (1/m1 + 1/m2)` (`docs/theory.md`, "One restitution at every speed"); zero of other contacts.
     fn speeding(&mut self, acceleration: T) -> T {
-        if !matches!(self.factor, Factor::Restoring(_)) {
+        let own = self.equations;
+        if !matches!(own.factors[self.side as usize], Factor::Restoring(_)) {
             return T::constant(Interval::ZERO);
         }
-        let (k, zero) = (self.denominator[0].len(), T::constant(Interval::ZERO));
-        let of = |a: &[T], b: &[T]| product(k, zero, |i| a[i], |i| b[i]);
+        let storing = Interval::point(4.0) / Interval::point(5.0)
+            * own.hertz[self.side as usize]
+            * own.inverse_masses();
+        let k = self.denominator[0].len();
+        let of = |a: &[T], b: &[T]| product(k, |i| a[i], |i| b[i]);
+        let [squares, cubes, inverse_speed, stage, factors] = &self.factors;
         let [fifth, inverse_square, stored, d, inverse_d, shares, others] = &mut self.denominator;
-        fifth.push(of(&self.squares, &self.cubes));
-        inverse_square.push(of(&self.inverse_speed, &self.inverse_speed));
+        fifth.push(of(squares, cubes));
+        inverse_square.push(of(inverse_speed, inverse_speed));
         stored.push(of(fifth, inverse_square));
-        d.push(of(&self.factors, stored).times(self.storing) + of(&self.stage, &self.stage));
+        d.push(of(factors, stored).times(storing) + of(stage, stage));
         quotient(inverse_d, |i| d[i]);
-        shares.push(of(&self.stage, inverse_d));
+        shares.push(of(stage, inverse_d));
         others.push(acceleration);
         of(others, shares)
     }
@@ -288,10 +249,10 @@ impl<T: Number> Push<T> {
 
 /// Adds the next term of the series of `1/x`.
 fn quotient<T: Number>(inverse: &mut Vec<T>, of: impl Fn(usize) -> T) {
-    let (k, zero) = (inverse.len(), T::constant(Interval::ZERO));
-    let first = inverse.first().copied().unwrap_or_else(|| of(0).reciprocal());
-    let next =
-        if k == 0 { first } else { zero - first * product(k - 1, zero, |i| inverse[i], |i| of(i + 1)) };
+    let next = match inverse.len() {
+        0 => of(0).reciprocal(),
+        k => T::constant(Interval::ZERO) - inverse[0] * product(k - 1, |i| inverse[i], |i| of(i + 1)),
+    };
     inverse.push(next);
 }
 
@@ -303,8 +264,8 @@ fn scales(ratio: Interval, square: Interval) -> [f64; STATE] {
 }
 
 /// The coefficient of the power `k` of a product of two series.
-pub fn product<T: Number>(k: usize, zero: T, a: impl Fn(usize) -> T, b: impl Fn(usize) -> T) -> T {
-    (0..=k).fold(zero, |sum, i| sum + a(i) * b(k - i))
+pub fn product<T: Number>(k: usize, a: impl Fn(usize) -> T, b: impl Fn(usize) -> T) -> T {
+    (0..=k).fold(T::constant(Interval::ZERO), |sum, i| sum + a(i) * b(k - i))
 }
 
 /// `[K1, K3]` of the contacts, `K = (4/3) q / ((δa + δb) √(1/R))` with `δ = (1 - ν²)/(πE)` (section 2 of the paper).
@@ -318,10 +279,8 @@ fn hertz_stiffness(surfaces: &Surfaces) -> [Interval; 2] {
         softness(s.young_3.get(), s.poisson_3.get()) + softness(s.young_4.get(), s.poisson_4.get()),
     ];
     let curvature = Interval::ONE / number(s.radius.get());
-    pairs.map(|softness| {
-        Interval::point(4.0) * number(s.coefficient.get())
-            / (Interval::point(3.0) * softness * curvature.sqrt())
-    })
+    let [three, four] = [3.0, 4.0].map(Interval::point);
+    pairs.map(|softness| four * number(s.coefficient.get()) / (three * softness * curvature.sqrt()))
 }
 
 /// A series at an independent variable, the last coefficient first (Horner).

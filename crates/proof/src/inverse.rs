@@ -1,6 +1,6 @@
 //! An approximate inverse of a matrix of functions of a family's parameter.
 
-use crate::taylor::Taylor;
+use crate::Taylor;
 use nalgebra::DMatrix;
 
 /// Newton's iterations: each doubles the order.
@@ -21,8 +21,7 @@ impl Inverse {
             return Some(Self(a));
         }
         for _ in 0..ITERATIONS {
-            let off = from_one(&product(matrix, &a));
-            let change = product(&a, &off);
+            let change = product(&a, &off(matrix, &a));
             for (a, change) in a.iter_mut().flatten().zip(change.into_iter().flatten()) {
                 *a = (*a + change).polynomial();
             }
@@ -38,15 +37,18 @@ impl Inverse {
 
     /// `1 - A M`.
     pub fn off(&self, matrix: &[Vec<Taylor>]) -> Vec<Vec<Taylor>> {
-        from_one(&product(&self.0, matrix))
+        off(&self.0, matrix)
     }
 }
 
-/// `1 - M`.
-fn from_one(matrix: &[Vec<Taylor>]) -> Vec<Vec<Taylor>> {
-    let entry = |i: usize, j: usize| (if i == j { Taylor::point(1.0) } else { Taylor::ZERO }) - matrix[i][j];
-    let n = 0..matrix.len();
-    n.clone().map(|i| n.clone().map(|j| entry(i, j)).collect()).collect()
+/// `1 - A B`.
+fn off(a: &[Vec<Taylor>], b: &[Vec<Taylor>]) -> Vec<Vec<Taylor>> {
+    let mut all = product(a, b);
+    for (i, row) in all.iter_mut().enumerate() {
+        row.iter_mut().for_each(|x| *x = -*x);
+        row[i] = row[i] + Taylor::point(1.0);
+    }
+    all
 }
 
 fn product(a: &[Vec<Taylor>], b: &[Vec<Taylor>]) -> Vec<Vec<Taylor>> {

@@ -1,11 +1,11 @@
 //! The largest values of a motion over its whole period.
 
-use crate::Interval;
-use crate::equations::{Equations, Mode, Push, product};
+use crate::equations::{Mode, Push, product};
 use crate::number::{Number, STATE};
 use crate::range::Range;
 use crate::segment::Passage;
 use crate::step::Quantity;
+use crate::{Equations, Interval};
 use retune_model::Measure;
 use serde::{Serialize, Serializer};
 
@@ -41,9 +41,7 @@ impl Serialize for Largest {
 pub fn largest(equations: &Equations, passages: &[Passage]) -> Largest {
     let over = |of: Of| {
         let mut most = Interval::ZERO;
-        for passage in passages {
-            over_passage(passage, &Value { equations, of }, &mut most);
-        }
+        passages.iter().for_each(|passage| over_passage(passage, &(equations, of), &mut most));
         most
     };
     Largest {
@@ -53,10 +51,10 @@ pub fn largest(equations: &Equations, passages: &[Passage]) -> Largest {
     }
 }
 
-/// Raises the largest value so far to that over a segment. Quantities that a mode does not have are zero in it.
-fn over_passage(passage: &Passage, value: &Value<'_>, most: &mut Interval) {
+/// Raises the largest value so far to that over a segment. There is no contact force in flight.
+fn over_passage(passage: &Passage, value: &(&Equations, Of), most: &mut Interval) {
     for (k, piece) in passage.pieces.iter().enumerate() {
-        if value.of == Of::Force && piece.mode == Mode::Flight {
+        if value.1 == Of::Force && piece.mode == Mode::Flight {
             return;
         }
         let is_last = k + 1 == passage.pieces.len();
@@ -78,56 +76,36 @@ enum Of {
     Force,
 }
 
-/// A quantity of a scene.
-struct Value<'a> {
-    equations: &'a Equations,
-    of: Of,
-}
-
-impl Quantity for Value<'_> {
+impl Quantity for (&Equations, Of) {
     fn series<T: Number>(&self, mode: Mode, motion: &[[T; STATE]]) -> Vec<T> {
-        match self.of {
-            Of::Energy => energy(self.equations, motion),
-            Of::Stretch(sign) => {
-                let stretch = stretch(self.equations, mode, motion);
-                stretch.into_iter().map(|c| c.times(Interval::point(sign))).collect()
+        let (equations, of) = self;
+        let square = |k: usize, i: usize| product(k, |n| motion[n][i], |n| motion[n][i]);
+        match (of, mode) {
+            // (m1 v1² + k1 x1²)/2.
+            (Of::Energy, _) => {
+                let [m, k] = [equations.m1, equations.k1].map(|x| Interval::point(0.5) * x);
+                (0..motion.len()).map(|n| square(n, 3).times(m) + square(n, 2).times(k)).collect()
             }
-            Of::Force => force(self.equations, mode, motion),
+            // r - D; in a contact r is the wall's position and z = q² beyond it.
+            (Of::Stretch(sign), _) => {
+                let (mut series, from): (Vec<T>, _) = match mode {
+                    Mode::Flight => (motion.iter().map(|c| c[0]).collect(), Interval::ZERO),
+                    Mode::Contact(side) => {
+                        let sign = Interval::point(side.sign());
+                        let depth = (0..motion.len()).map(|k| square(k, 0).times(sign)).collect();
+                        (depth, equations.walls[side as usize])
+                    }
+                };
+                series[0] = series[0] + T::constant(from - equations.rest);
+                series.into_iter().map(|c| c.times(Interval::point(*sign))).collect()
+            }
+            // K q³ times the factor of a loss.
+            (Of::Force, Mode::Contact(side)) => {
+                let mut push = Push::new(equations, side);
+                (0..motion.len()).for_each(|_| push.extend(motion));
+                push.force
+            }
+            (Of::Force, Mode::Flight) => vec![T::constant(Interval::ZERO); motion.len()],
         }
     }
-}
-
-fn square<T: Number>(motion: &[[T; STATE]], k: usize, i: usize) -> T {
-    product(k, T::constant(Interval::ZERO), |n| motion[n][i], |n| motion[n][i])
-}
-
-/// `E1 = (m1 v1² + k1 x1²)/2`.
-fn energy<T: Number>(equations: &Equations, motion: &[[T; STATE]]) -> Vec<T> {
-    let half = Interval::point(0.5);
-    let at = |k: usize| {
-        square(motion, k, 3).times(half * equations.m1) + square(motion, k, 2).times(half * equations.k1)
-    };
-    (0..motion.len()).map(at).collect()
-}
-
-/// `r - D`; in a contact `r` is the wall's position and `z = q²` beyond it.
-fn stretch<T: Number>(equations: &Equations, mode: Mode, motion: &[[T; STATE]]) -> Vec<T> {
-    let (mut series, from): (Vec<T>, _) = match mode {
-        Mode::Flight => (motion.iter().map(|c| c[0]).collect(), Interval::ZERO),
-        Mode::Contact(side) => {
-            let sign = Interval::point(side.sign());
-            let depth = (0..motion.len()).map(|k| square(motion, k, 0).times(sign)).collect();
-            (depth, equations.wall(side).unwrap_or(Interval::ENTIRE))
-        }
-    };
-    series[0] = series[0] + T::constant(from - equations.rest);
-    series
-}
-
-/// `K q³` times the factor of a loss; zero in flight.
-fn force<T: Number>(equations: &Equations, mode: Mode, motion: &[[T; STATE]]) -> Vec<T> {
-    let Mode::Contact(side) = mode else { return vec![T::constant(Interval::ZERO); motion.len()] };
-    let mut force = Push::new(equations, side);
-    (0..motion.len()).for_each(|_| force.extend(motion));
-    force.push
 }

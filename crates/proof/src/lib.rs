@@ -42,6 +42,9 @@ mod step;
 mod taylor;
 mod theorem;
 
+use equations::Equations;
+use taylor::Taylor;
+
 pub use band::{Band, Guesses, LeftOut, Piece, band};
 pub use elementary::cos_sin;
 pub use event::Event;

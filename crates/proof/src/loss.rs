@@ -2,7 +2,6 @@
 
 use crate::{Failure, Interval};
 use retune_model::Loss;
-use std::cmp::Ordering;
 
 /// The factor of Hertz's force.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +44,7 @@ pub fn touch_down(chi: f64, stored: f64, w: f64) -> f64 {
         v * v * ((1.0 - h) - (chi.ln_1p() - (chi * h).ln_1p()) / chi) / chi - stored
     };
     let (mut low, mut high) = (w.abs(), 2.0 * w.abs() + 1e-9);
-    while excess(high).partial_cmp(&0.0) != Some(Ordering::Greater) && high < 1e9 {
+    while (excess(high) <= 0.0 || excess(high).is_nan()) && high < 1e9 {
         high *= 2.0;
     }
     for _ in 0..80 {
@@ -108,6 +107,18 @@ mod tests {
             };
             let own = own.get();
             assert!(chi.wider(1e-14 * own).contains(own) && chi.width() < 1e-12 * own, "{e}: {own} {chi}");
+        }
+    }
+
+    /// Langevin's function grows: at the ends of `a = χ (1 + e)/2` it is below and above what it is to be.
+    #[test]
+    fn exact_langevins_function_is_below_and_above_at_the_ends_of_chi() {
+        for e in [0.2, 0.25, 0.3, 0.5, 0.6, 0.7, 0.75, 0.8, 0.9, 0.99] {
+            let e = Interval::decimal(e);
+            let a = chi(e).expect("a number") * (Interval::ONE + e) / Interval::point(2.0);
+            let wanted = (Interval::ONE - e) / (Interval::ONE + e);
+            assert!((wanted - langevin(a.lo())).is_positive(), "{e}: {a}");
+            assert!((langevin(a.hi()) - wanted).is_positive(), "{e}: {a}");
         }
     }
 }

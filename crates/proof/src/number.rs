@@ -1,7 +1,6 @@
 //! What the equations of motion are evaluated in: intervals or functions of a parameter, alone or with their derivatives by the coordinates of a state.
 
-use crate::elementary::cos_sin;
-use crate::{Interval, taylor::Taylor};
+use crate::{Interval, Taylor, cos_sin};
 use std::ops::{Add, Mul, Sub};
 
 /// Coordinates of a state: four of the motion, the phase of the force, and the speed of a contact that loses energy.
@@ -23,7 +22,9 @@ pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = 
     /// A function of the parameter.
     fn of(function: Taylor) -> Self;
     /// A multiple by a constant.
-    fn times(self, factor: Interval) -> Self;
+    fn times(self, factor: Interval) -> Self {
+        self * Self::constant(factor)
+    }
     /// `[cos x, sin x]`.
     fn cos_sin(self) -> [Self; 2];
     /// `1/x`.
@@ -37,10 +38,6 @@ impl Number for Interval {
 
     fn of(function: Taylor) -> Self {
         function.hull()
-    }
-
-    fn times(self, factor: Interval) -> Self {
-        self * factor
     }
 
     fn cos_sin(self) -> [Self; 2] {
@@ -88,6 +85,11 @@ impl<T: Number> Gradient<T> {
     pub fn coordinates(state: &[T; STATE]) -> [Self; STATE] {
         let entry = |is_own: bool| T::constant(if is_own { Interval::ONE } else { Interval::ZERO });
         std::array::from_fn(|i| Self { value: state[i], by: std::array::from_fn(|j| entry(i == j)) })
+    }
+
+    /// What does not depend on the state.
+    fn of_value(value: T) -> Self {
+        Self { value, by: [T::constant(Interval::ZERO); STATE] }
     }
 
     fn zip(self, other: Self, value: T, by: impl Fn(T, T) -> T) -> Self {
@@ -146,12 +148,5 @@ impl<T: Number> Number for Gradient<T> {
         let value = self.value.reciprocal();
         let slope = T::constant(Interval::ZERO) - value * value;
         Self { value, by: self.by.map(|by| slope * by) }
-    }
-}
-
-impl<T: Number> Gradient<T> {
-    /// What does not depend on the state.
-    fn of_value(value: T) -> Self {
-        Self { value, by: [T::constant(Interval::ZERO); STATE] }
     }
 }

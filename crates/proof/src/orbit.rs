@@ -1,13 +1,11 @@
 //! A motion that is guessed to repeat, as a ring of events, and its improvement by Newton's iteration.
 
+use crate::crossing::Section;
 use crate::elementary::pi;
-use crate::equations::Equations;
-use crate::event::Event;
 use crate::inverse::Inverse;
-use crate::number::{FREE, STATE, State};
+use crate::number::FREE;
 use crate::segment::{Node, Passage, Plan, aimed, follow, plan, rest_of_contact};
-use crate::taylor::Taylor;
-use crate::{Failure, Interval};
+use crate::{Equations, Event, Failure, Interval, Taylor};
 use retune_model::Side;
 use std::f64::consts::TAU;
 
@@ -23,6 +21,9 @@ const CLOSED: f64 = 1e-13;
 /// A motion that is as near as this to its first phase, rad, has come back.
 const BACK: f64 = 1e-2;
 
+/// A state `[x1, v1, x2, v2]` at a crest of the force, and after how many periods it may repeat.
+pub type Guess = ([f64; 4], usize);
+
 /// A motion that may repeat after so many periods of the force.
 #[derive(Clone, Debug)]
 pub struct Orbit {
@@ -36,12 +37,6 @@ pub struct Orbit {
     turns: Vec<usize>,
 }
 
-/// The event after a crest; the crest itself if none comes before it has come round.
-fn next_event(equations: &Equations, crest: Node, full: Interval) -> Result<Node, Failure> {
-    let Plan { end, reached, .. } = plan(equations, &crest, Some(full))?;
-    Ok(if end == Event::Crest { crest } else { Node { event: end, state: reached } })
-}
-
 /// The equations of a repeating motion at a box: unknowns are the free coordinates of all nodes.
 #[derive(Clone, Debug)]
 pub struct Residual {
@@ -49,6 +44,17 @@ pub struct Residual {
     pub passages: Vec<Passage>,
     /// By how much the motions from the centres miss the next nodes.
     pub gaps: Vec<Taylor>,
+}
+
+/// A motion that repeats to rounding, or a family of such.
+#[derive(Clone, Debug)]
+pub struct Closed {
+    /// The motion.
+    pub orbit: Orbit,
+    /// What its equations leave at the nodes themselves.
+    pub known: Residual,
+    /// The inverse of their derivatives there.
+    pub inverse: Inverse,
 }
 
 /// `2πn`.
@@ -62,32 +68,28 @@ impl Orbit {
     ///
     /// # Errors
     /// The motion grazes, or does not come back.
-    pub fn guess(
-        equations: &Equations,
-        [x1, v1, x2, v2]: [f64; 4],
-        periods: usize,
-        at_crest: bool,
-    ) -> Result<Self, Failure> {
+    pub fn guess(equations: &Equations, (start, periods): Guess, at_crest: bool) -> Result<Self, Failure> {
+        let [x1, v1, x2, v2] = start;
         let (r, w) = (x2 - x1, v2 - v1);
-        let indented = Side::BOTH.into_iter().find_map(|side| {
-            let depth = side.sign() * (r - equations.wall(side)?.mid());
-            (depth >= 0.0).then_some((side, depth))
-        });
-        let first = match indented {
-            None => {
-                let crest = Node { event: Event::Crest, state: [r, w, x1, v1, 0.0, 0.0].map(Taylor::point) };
-                if at_crest { crest } else { next_event(equations, crest, turn(periods))? }
+        let crest = Node { event: Event::Crest, state: [r, w, x1, v1, 0.0, 0.0].map(Taylor::point) };
+        let depth = |side: Side| side.sign() * (r - equations.walls[side as usize].mid());
+        let first = match Side::BOTH.into_iter().find(|side| depth(*side) >= 0.0) {
+            // The rest of a contact that began before.
+            Some(side) => {
+                let state = [depth(side).sqrt(), side.sign() * w, x1, v1, 0.0, 0.0];
+                rest_of_contact(equations, side, state)?
             }
-            Some((side, depth)) => {
-                // The rest of a contact that began before.
-                rest_of_contact(equations, side, [depth.sqrt(), side.sign() * w, x1, v1, 0.0, 0.0])?
-            }
+            None if at_crest => crest,
+            None => match plan(equations, &crest, Some(turn(periods)))? {
+                Plan { end: Section { event: Event::Crest, .. }, .. } => crest,
+                Plan { end, reached, .. } => Node { event: end.event, state: reached },
+            },
         };
         let mut orbit = Self { periods, nodes: vec![first], plans: Vec::new(), turns: Vec::new() };
         while orbit.nodes.len() < EVENTS {
             let k = orbit.plans.len();
             let next = plan(equations, &orbit.nodes[k], orbit.crest(k))?;
-            let mut reached = Node { event: next.end, state: next.reached };
+            let mut reached = Node { event: next.end.event, state: next.reached };
             orbit.plans.push(next);
             let left = periods - orbit.turns.iter().sum::<usize>();
             let past = reached.state[4].mid() - first.state[4].mid() - turn(left).mid();
@@ -103,12 +105,12 @@ impl Orbit {
             orbit.turns.push(turns);
             orbit.nodes.push(reached);
         }
-        Err(Failure::Endless { steps: EVENTS })
+        Err(Failure::Endless(EVENTS))
     }
 
-    /// The number of unknowns.
-    pub fn unknowns(&self) -> usize {
-        FREE * self.nodes.len()
+    /// The unknowns.
+    pub fn unknowns(&self) -> impl Iterator<Item = Taylor> {
+        self.nodes.iter().flat_map(|node| node.event.free().map(|i| node.state[i]))
     }
 
     /// The phase of the crest where it ends, as it is counted in a segment, if it begins at one.
@@ -117,22 +119,17 @@ impl Orbit {
         (self.nodes[0].event == Event::Crest).then(|| turn(self.periods - taken))
     }
 
-    /// The node after one, and by how much larger the phase is that the segment comes to.
-    fn next(&self, k: usize) -> (&Node, Interval) {
-        (&self.nodes[(k + 1) % self.nodes.len()], turn(self.turns[k]))
-    }
-
-    /// Its equations at all states that are in boxes `away` about its nodes.
+    /// Its equations at all states whose unknowns are `away` from those of its nodes.
     ///
     /// # Errors
     /// A segment cannot be proven.
-    pub fn residual(&self, equations: &Equations, away: &[State]) -> Result<Residual, Failure> {
+    pub fn residual(&self, equations: &Equations, away: &[Interval]) -> Result<Residual, Failure> {
         let (mut passages, mut gaps) = (Vec::new(), Vec::new());
-        for (k, node) in self.nodes.iter().enumerate() {
-            let passage = follow(equations, node, &away[k], &self.plans[k], self.crest(k))?;
-            let (next, shift) = self.next(k);
+        for (k, (node, away)) in self.nodes.iter().zip(away.chunks(FREE)).enumerate() {
+            let passage = follow(equations, node, away, &self.plans[k])?;
+            let next = &self.nodes[(k + 1) % self.nodes.len()];
             for i in next.event.free() {
-                let shift = if i == 4 { shift } else { Interval::ZERO };
+                let shift = if i == 4 { turn(self.turns[k]) } else { Interval::ZERO };
                 gaps.push(passage.centre[i] - next.state[i] - Taylor::from(shift));
             }
             passages.push(passage);
@@ -142,38 +139,40 @@ impl Orbit {
 
     /// The derivatives of the equations by the unknowns: rows of blocks, that of each segment and minus one at the next node.
     pub fn jacobian(&self, passages: &[Passage]) -> Vec<Vec<Taylor>> {
-        let (n, size) = (self.unknowns(), FREE);
+        let n = FREE * self.nodes.len();
         let mut all = vec![vec![Taylor::ZERO; n]; n];
-        for (k, node) in self.nodes.iter().enumerate() {
-            let next = (k + 1) % self.nodes.len();
-            for (row, i) in self.nodes[next].event.free().enumerate() {
-                let whole = &mut all[size * k + row];
-                for (column, j) in node.event.free().enumerate() {
-                    whole[size * k + column] = whole[size * k + column] + passages[k].by[i][j];
-                }
-                let own = size * next + row;
+        for (k, passage) in passages.iter().enumerate() {
+            for (i, row) in passage.by.iter().enumerate() {
+                let (whole, own) = (&mut all[FREE * k + i], FREE * ((k + 1) % self.nodes.len()) + i);
+                whole[FREE * k..][..FREE].copy_from_slice(row);
                 whole[own] = whole[own] - Taylor::point(1.0);
             }
         }
         all
     }
 
-    /// What the equations leave at the nodes themselves, and the inverse of their derivatives there.
-    fn at_nodes(&self, equations: &Equations) -> Result<(Residual, Option<Inverse>), Failure> {
-        let known = self.residual(equations, &vec![[Interval::ZERO; STATE]; self.nodes.len()])?;
+    /// With what the equations leave at the nodes themselves, and the inverse of their derivatives there.
+    fn closed(self, equations: &Equations) -> Result<Closed, Failure> {
+        let known = self.residual(equations, &vec![Interval::ZERO; FREE * self.nodes.len()])?;
         let inverse = Inverse::of(&self.jacobian(&known.passages));
-        Ok((known, inverse))
+        let refused = Failure::Guess(self.periods, largest(&known.gaps));
+        Ok(Closed { orbit: self, known, inverse: inverse.ok_or(refused)? })
     }
 
-    /// With nodes of other states.
-    fn with(&self, state: impl Fn(usize, Taylor) -> Taylor) -> Self {
-        let mut next = self.clone();
-        for (k, node) in next.nodes.iter_mut().enumerate() {
-            for (place, i) in node.event.free().enumerate() {
-                node.state[i] = state(FREE * k + place, node.state[i]).polynomial();
+    /// With other unknowns.
+    fn with(&self, unknowns: impl IntoIterator<Item = Taylor>) -> Self {
+        let (mut next, mut unknowns) = (self.clone(), unknowns.into_iter());
+        for node in &mut next.nodes {
+            for (i, x) in node.event.free().into_iter().zip(&mut unknowns) {
+                node.state[i] = x.polynomial();
             }
         }
         next
+    }
+
+    /// With the unknowns less a change.
+    fn less(&self, change: &[Taylor]) -> Self {
+        self.with(self.unknowns().zip(change).map(|(x, change)| x - *change))
     }
 
     /// With the ways planned anew.
@@ -183,7 +182,7 @@ impl Orbit {
     fn planned(self, equations: &Equations) -> Result<Self, Failure> {
         let plans = self.nodes.iter().enumerate().map(|(k, node)| plan(equations, node, self.crest(k)));
         let plans = plans.collect::<Result<Vec<_>, _>>()?;
-        let same = plans.iter().zip(&self.plans).all(|(new, old)| new.end == old.end);
+        let same = plans.iter().zip(&self.plans).all(|(new, old)| new.end.event == old.end.event);
         if same { Ok(Self { plans, ..self }) } else { Err(Failure::Sequence) }
     }
 
@@ -192,52 +191,47 @@ impl Orbit {
     /// # Errors
     /// Its events are others there.
     pub fn member(&self, equations: &Equations, s: f64) -> Result<Self, Failure> {
-        self.with(|_, state| Taylor::point(state.near(s))).planned(equations)
+        self.with(self.unknowns().map(|x| Taylor::point(x.near(s)))).planned(equations)
     }
 
     /// The family of motions through this one for the frequencies of the equations, by Newton's iteration on polynomials, each of which
-    /// doubles the order; with the inverse of the derivatives, and what the equations leave.
+    /// doubles the order.
     ///
     /// # Errors
     /// A segment cannot be followed.
-    pub fn widened(mut self, equations: &Equations) -> Result<(Self, Inverse, Residual), Failure> {
-        for n in 0.. {
-            let aim = |(k, node): (usize, &Node)| aimed(equations, node, &self.plans[k], self.crest(k));
-            self.plans = self.nodes.iter().enumerate().map(aim).collect::<Result<_, _>>()?;
-            let (known, inverse) = self.at_nodes(equations)?;
-            let inverse = inverse.ok_or(Failure::Sequence)?;
-            if n == WIDENED {
-                return Ok((self, inverse, known));
-            }
-            let change = inverse.times(&known.gaps);
-            self = self.with(|place, state| state - change[place]);
-        }
-        Err(Failure::Sequence)
+    pub fn widened(self, equations: &Equations) -> Result<Closed, Failure> {
+        let closed = |mut orbit: Self| {
+            let aim = |(node, plan): (&Node, &Plan)| aimed(equations, node, plan);
+            orbit.plans = orbit.nodes.iter().zip(&orbit.plans).map(aim).collect();
+            orbit.closed(equations)
+        };
+        (0..WIDENED)
+            .try_fold(closed(self)?, |own, _| closed(own.orbit.less(&own.inverse.times(&own.known.gaps))))
     }
 
-    /// The same, improved by Newton's iteration on the middles of all intervals; with the inverse of the derivatives there.
+    /// The same, improved by Newton's iteration on the middles of all intervals.
     ///
     /// # Errors
     /// The iteration does not end on a motion that repeats.
-    pub fn improved(self, equations: &Equations) -> Result<(Self, Inverse), Failure> {
-        let mut orbit = self;
-        let mut last = f64::INFINITY;
+    pub fn improved(self, equations: &Equations) -> Result<Closed, Failure> {
+        let (mut own, mut last) = (self.closed(equations)?, f64::INFINITY);
         for _ in 0..ITERATIONS {
-            let (known, inverse) = orbit.at_nodes(equations)?;
-            let gap = known.gaps.iter().map(|gap| gap.mid().abs()).fold(0.0, f64::max);
-            let refused = Failure::Guess { periods: orbit.periods, gap };
-            let inverse = inverse.ok_or(refused.clone())?;
-            let change = inverse.times(&known.gaps);
-            let size = change.iter().map(|x| x.mid().abs()).fold(0.0, f64::max);
+            let change = own.inverse.times(&own.known.gaps);
+            let size = largest(&change);
             if size <= CLOSED || (size < 1e-9 && size >= 0.5 * last) {
-                return Ok((orbit, inverse));
+                return Ok(own);
             }
             if size.is_nan() || size >= 2.0 * last {
-                return Err(refused);
+                break;
             }
             last = size;
-            orbit = orbit.with(|place, state| state - change[place]).planned(equations)?;
+            own = own.orbit.less(&change).planned(equations)?.closed(equations)?;
         }
-        Err(Failure::Guess { periods: orbit.periods, gap: last })
+        Err(Failure::Guess(own.orbit.periods, largest(&own.known.gaps)))
     }
+}
+
+/// The largest of the values at the middles; no number if one is none.
+fn largest(all: &[Taylor]) -> f64 {
+    all.iter().map(|x| x.mid().abs()).fold(0.0, |most, x| if x.is_nan() { x } else { x.max(most) })
 }

@@ -1,8 +1,7 @@
 //! What values a quantity has during a step, from its Taylor series with the last coefficient anywhere in the step.
 
-use crate::Interval;
 use crate::equations::at;
-use crate::taylor::Taylor;
+use crate::{Interval, Taylor};
 
 /// Halvings of a step before nothing more is tried.
 const DEPTH: u32 = 24;
@@ -35,14 +34,7 @@ impl Range {
 
     /// Its derivative.
     pub fn slope_at(&self, t: Taylor) -> Taylor {
-        let slope = self
-            .series
-            .iter()
-            .enumerate()
-            .skip(1)
-            .map(|(k, c)| *c * Taylor::point(k as f64))
-            .collect::<Vec<_>>();
-        at(slope.into_iter(), t)
+        at(self.series.iter().enumerate().skip(1).map(|(k, c)| *c * Taylor::point(k as f64)), t)
     }
 
     fn value(&self, t: f64) -> Interval {

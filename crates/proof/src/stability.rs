@@ -1,10 +1,9 @@
 //! Whether small changes of a motion die out: its multipliers, the eigenvalues of the product of all segments' derivatives.
 
-use crate::Interval;
 use crate::number::FREE;
-use crate::orbit::Orbit;
 use crate::segment::Passage;
-use crate::taylor::Taylor;
+use crate::small::{Block, matrix, times};
+use crate::{Interval, Taylor};
 use nalgebra::{Matrix4, SMatrix};
 use serde::Serialize;
 use std::array;
@@ -17,9 +16,6 @@ const LEAST: f64 = 1e-6;
 
 /// How often the range of a family's parameter is halved.
 const DEPTH: u32 = 6;
-
-/// A matrix of the free coordinates.
-type Section = [[Taylor; FREE]; FREE];
 
 /// What is proven of the multipliers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -34,19 +30,15 @@ pub enum Stability {
 }
 
 /// Whether a motion, or each of a family, is stable, from what is known of its segments.
-pub fn stability(orbit: &Orbit, passages: &[Passage]) -> Stability {
-    let segments: Vec<Section> =
-        passages.iter().enumerate().map(|(k, passage)| section(orbit, k, passage)).collect();
-    if segments.iter().flatten().flatten().all(|x| x.is_constant()) {
-        stability_of(&segments)
-    } else {
-        stability_over(&segments, [0.0, 1.0], DEPTH)
-    }
+pub fn stability(passages: &[Passage]) -> Stability {
+    let segments: Vec<Block> = passages.iter().map(|passage| passage.by).collect();
+    let is_constant = segments.iter().flatten().flatten().all(|x| x.is_constant());
+    stability_over(&segments, [0.0, 1.0], if is_constant { 0 } else { DEPTH })
 }
 
 /// That of the part of a family from `middle - half` to `middle + half`.
-fn stability_over(segments: &[Section], [middle, half]: [f64; 2], depth: u32) -> Stability {
-    let part = |m: &Section| m.map(|row| row.map(|x| x.part([middle, half])));
+fn stability_over(segments: &[Block], [middle, half]: [f64; 2], depth: u32) -> Stability {
+    let part = |m: &Block| m.map(|row| row.map(|x| x.part([middle, half])));
     let own = stability_of(&segments.iter().map(part).collect::<Vec<_>>());
     if own != Stability::Open || depth == 0 {
         return own;
@@ -61,20 +53,8 @@ fn stability_over(segments: &[Section], [middle, half]: [f64; 2], depth: u32) ->
     }
 }
 
-/// The derivatives of the free coordinates at the end of a segment by those at its beginning.
-fn section(orbit: &Orbit, k: usize, passage: &Passage) -> Section {
-    let (from, to) = (orbit.nodes[k].event, orbit.nodes[(k + 1) % orbit.nodes.len()].event);
-    let (rows, columns): (Vec<usize>, Vec<usize>) = (to.free().collect(), from.free().collect());
-    array::from_fn(|i| array::from_fn(|j| passage.by[rows[i]][columns[j]]))
-}
-
-fn times(a: &Section, b: &Section) -> Section {
-    let entry = |i: usize, j: usize| (0..FREE).fold(Taylor::ZERO, |sum, k| sum + a[i][k] * b[k][j]);
-    array::from_fn(|i| array::from_fn(|j| entry(i, j)))
-}
-
 /// Whether all multipliers of all matrices are below 1, or one of each is above.
-fn stability_of(segments: &[Section]) -> Stability {
+fn stability_of(segments: &[Block]) -> Stability {
     let product = segments.iter().fold(Matrix4::identity(), |product, m| middle(m) * product);
     let largest = product.complex_eigenvalues().iter().fold(0.0, |most, x| f64::max(most, x.norm()));
     // A bound on the multipliers is the product of those on the segments.
@@ -98,12 +78,12 @@ fn stability_of(segments: &[Section]) -> Stability {
     Stability::Stable(found.unwrap_or(1.0))
 }
 
-fn middle(matrix: &Section) -> Matrix4<f64> {
-    Matrix4::from_fn(|i, j| matrix[i][j].mid())
+fn middle(of: &Block) -> Matrix4<f64> {
+    Matrix4::from_fn(|i, j| of[i][j].mid())
 }
 
-fn points(matrix: &Matrix4<f64>) -> Section {
-    array::from_fn(|i| array::from_fn(|j| Taylor::point(matrix[(i, j)])))
+fn points(of: &Matrix4<f64>) -> Block {
+    matrix(|i, j| Taylor::point(of[(i, j)]))
 }
 
 /// Whether all multipliers of the product of so many matrices, each over `bound`, are below 1 (true), or one is above (false); none if neither is proven.
@@ -113,9 +93,9 @@ fn points(matrix: &Matrix4<f64>) -> Section {
 /// falls along `x, N x, N² x, …`, and no multiplier has the size 1, as `v* V₀ v` would not fall for its vector. If `V₀` is positive definite
 /// itself, all are below 1 (P. Stein, 1952). If `xᵀ V₀ x` is negative for some `x`, it stays so and falls for ever: `Nᵏ x` does not tend to
 /// zero, and one is above 1.
-fn are_below(segments: &[Section], bound: f64, between: f64) -> Option<bool> {
+fn are_below(segments: &[Block], bound: f64, between: f64) -> Option<bool> {
     let over = Taylor::from(Interval::ONE / Interval::point(bound));
-    let scaled: Vec<Section> = segments.iter().map(|m| m.map(|row| row.map(|x| x * over))).collect();
+    let scaled: Vec<Block> = segments.iter().map(|m| m.map(|row| row.map(|x| x * over))).collect();
     // Any symmetric matrices will do that pass.
     let forms = forms(&segments.iter().map(|m| middle(m) / between).collect::<Vec<_>>())?;
     if are_falling(&scaled, &forms) { is_positive(&forms[0]) } else { None }
@@ -144,23 +124,21 @@ fn symmetric(a: Matrix4<f64>) -> Matrix4<f64> {
 
 /// Whether all `Vₖ - Nₖᵀ Vₖ₊₁ Nₖ` are positive definite: seen in coordinates `C` in which they are near the identity, as they are if `Cᵀ (…) C` is,
 /// which is zero on what `C` makes zero.
-fn are_falling(scaled: &[Section], forms: &[Matrix4<f64>]) -> bool {
+fn are_falling(scaled: &[Block], forms: &[Matrix4<f64>]) -> bool {
     scaled.iter().enumerate().all(|(k, n)| {
         let (v, next) = (&forms[k], &forms[(k + 1) % forms.len()]);
         let falls = v - middle(n).transpose() * next * middle(n);
-        let Some(c) = symmetric(falls).cholesky().and_then(|root| root.l().transpose().try_inverse()) else {
-            return false;
-        };
-        let before = seen(&points(v), &points(&c));
-        let after = seen(&points(next), &times(n, &points(&c)));
-        is_positive_definite(&array::from_fn(|i| array::from_fn(|j| before[i][j] - after[i][j])))
+        let root = symmetric(falls).cholesky().and_then(|root| root.l().transpose().try_inverse());
+        root.map(|c| points(&c)).is_some_and(|c| {
+            let (before, after) = (seen(&points(v), &c), seen(&points(next), &times(n, &c)));
+            is_positive_definite(&matrix(|i, j| before[i][j] - after[i][j]))
+        })
     })
 }
 
 /// A form in other coordinates, `Cᵀ V C`.
-fn seen(form: &Section, c: &Section) -> Section {
-    let turned: Section = array::from_fn(|i| array::from_fn(|j| c[j][i]));
-    times(&times(&turned, form), c)
+fn seen(form: &Block, c: &Block) -> Block {
+    times(&times(&matrix(|i, j| c[j][i]), form), c)
 }
 
 /// Whether a symmetric matrix is positive definite (true), or negative in some direction (false); none if neither is proven.
@@ -177,7 +155,7 @@ fn is_positive(form: &Matrix4<f64>) -> Option<bool> {
 }
 
 /// Whether all symmetric matrices are positive definite: all pivots of Gauss's elimination are positive.
-fn is_positive_definite(matrix: &Section) -> bool {
+fn is_positive_definite(matrix: &Block) -> bool {
     let mut a = matrix.map(|row| row.map(Taylor::hull));
     for k in 0..FREE {
         if !a[k][k].is_positive() {
@@ -197,11 +175,11 @@ mod tests {
     use super::*;
 
     /// A block-triangular matrix with the eigenvalues `a`, `b` and `r e^{±iα}`, in other coordinates.
-    fn with(a: f64, b: f64, r: f64, angle: f64) -> Section {
+    fn with(a: f64, b: f64, r: f64, angle: f64) -> Block {
         let (c, s) = (r * angle.cos(), r * angle.sin());
         let m = [[a, 3.0, 0.0, 7.0], [0.0, b, 5.0, 0.0], [0.0, 0.0, c, -s], [0.0, 0.0, s, c]];
-        let m: Section = m.map(|row| row.map(Taylor::point));
-        let mut shear: Section =
+        let m: Block = m.map(|row| row.map(Taylor::point));
+        let mut shear: Block =
             array::from_fn(|i| array::from_fn(|j| Taylor::point(if i == j { 1.0 } else { 0.0 })));
         (shear[3][0], shear[2][1]) = (Taylor::point(2.0), Taylor::point(-1.0));
         let mut back = shear;
@@ -231,7 +209,7 @@ mod tests {
     /// Each of two matrices alone is unstable, their product stable; and the other way round.
     #[test]
     fn exact_of_several_segments_the_product_counts() {
-        let diagonal = |d: [f64; 4]| -> Section {
+        let diagonal = |d: [f64; 4]| -> Block {
             array::from_fn(|i| array::from_fn(|j| Taylor::point(if i == j { d[i] } else { 0.0 })))
         };
         let pair = [diagonal([4.0, 0.1, 0.2, 0.3]), diagonal([0.125, 5.0, 0.2, 0.3])];

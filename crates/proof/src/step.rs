@@ -1,10 +1,10 @@
 //! One validated step of the motions from a set of states, together with their derivatives by the first state.
 
-use crate::Interval;
-use crate::equations::{Equations, Mode, at};
+use crate::equations::{Flow, Mode, at};
 use crate::number::{Family, Gradient, Number, STATE, State};
-use crate::small::{Frame, Matrix, hull, identity, plus, times, times_vector};
-use crate::taylor::Taylor;
+use crate::small::{Frame, Matrix, identity, matrix, plus, times, times_vector};
+use crate::{Interval, Taylor};
+use std::array;
 
 /// Terms of a Taylor polynomial: the first power that is left out.
 pub const ORDER: usize = 20;
@@ -48,7 +48,7 @@ impl States {
         let moved = |i: usize| {
             (0..STATE).fold(Taylor::ZERO, |sum, j| sum + self.by[i][j] * Taylor::from(self.away[j]))
         };
-        plus(&self.centre(), &std::array::from_fn(moved))
+        plus(&self.centre(), &array::from_fn(moved))
     }
 }
 
@@ -67,10 +67,10 @@ pub struct Piece {
 ///
 /// If `start + h f(E)` is in `E`, they are in `E` (Picard and Lindelöf): a motion that left `E` first would be in `E` up to then, so its change
 /// would be in `h f(E)`.
-pub fn enclosure(equations: &Equations, mode: Mode, start: &State, h: Interval) -> Option<State> {
+pub fn enclosure(flow: Flow<'_>, start: &State, h: Interval) -> Option<State> {
     let reached = |e: &State| {
-        let slopes = equations.derivative(mode, e);
-        std::array::from_fn(|i| start[i] + h * slopes[i])
+        let slopes = flow.derivative(e);
+        array::from_fn(|i| start[i] + h * slopes[i])
     };
     fixed(reached(start), reached)
 }
@@ -93,11 +93,11 @@ fn fixed(guess: State, map: impl Fn(&State) -> State) -> Option<State> {
 }
 
 /// The derivatives by the state at the beginning of a step, anywhere in it, where the motions are in `e`: `W` with `I + h f'(e) W` in `W`.
-pub fn derivatives_within(equations: &Equations, mode: Mode, e: &State, h: Interval) -> Option<Matrix> {
-    let slopes = equations.derivative(mode, &Gradient::coordinates(e)).map(|slope| slope.by);
+pub fn derivatives_within(flow: Flow<'_>, e: &State, h: Interval) -> Option<Matrix> {
+    let slopes = flow.derivative(&Gradient::coordinates(e)).map(|slope| slope.by);
     let mut within = identity();
     for j in 0..STATE {
-        let unit: State = std::array::from_fn(|i| within[i][j]);
+        let unit: State = array::from_fn(|i| within[i][j]);
         let change = |column: &State| times_vector(&slopes, column).map(|slope| h * slope);
         let column = fixed(plus(&unit, &change(&unit)), |column| plus(&unit, &change(column)))?;
         (0..STATE).for_each(|i| within[i][j] = column[i]);
@@ -105,42 +105,31 @@ pub fn derivatives_within(equations: &Equations, mode: Mode, e: &State, h: Inter
     Some(within)
 }
 
-/// A step of the length `h`: what the states have become, and what is known in between. None if no box was found that the motions stay in.
-pub fn step(equations: &Equations, mode: Mode, states: &States, h: Taylor) -> Option<(States, Piece)> {
-    step_of(ORDER, equations, mode, states, h)
-}
-
-fn step_of(
-    order: usize,
-    equations: &Equations,
-    mode: Mode,
-    states: &States,
-    h: Taylor,
-) -> Option<(States, Piece)> {
+/// A step of the length `h` with so many terms: what the states have become, and what is known in between. None if no box was found that the motions stay
+/// in.
+pub fn step(flow: Flow<'_>, states: &States, h: Taylor, order: usize) -> Option<(States, Piece)> {
     let length = h.hull();
     if !length.is_positive() {
         return None;
     }
     let during = Interval::new(0.0, length.hi());
     let all = states.all();
-    let e = enclosure(equations, mode, &hull(&all), during)?;
-    let within = derivatives_within(equations, mode, &e, during)?;
-    let rough = equations.series(mode, &Gradient::coordinates(&e), order);
-    let power = |k: usize| (0..k).fold(Interval::ONE, |power, _| power * length);
-    let left_out: State = rough[order].map(|c| c.value * power(order));
-    let by_left_out = times(&rough[order].map(|c| c.by.map(|by| by * power(order))), &within);
+    let e = enclosure(flow, &all.map(Taylor::hull), during)?;
+    let within = derivatives_within(flow, &e, during)?;
+    let rough = flow.series(&Gradient::coordinates(&e), order);
+    let (anywhere, power) = in_shares(&rough, length);
+    let by_left_out = times(&rough[order].map(|c| c.by.map(|by| by * power)), &within);
 
-    let series = equations.series(mode, &Gradient::coordinates(&all), order - 1);
-    let over =
-        |i: usize, j: usize| at(series.iter().map(|c| c[i].by[j]), h) + Taylor::from(by_left_out[i][j]);
-    let step: Matrix<Taylor> = std::array::from_fn(|i| std::array::from_fn(|j| over(i, j)));
+    let series = flow.series(&Gradient::coordinates(&all), order - 1);
+    let step: Matrix<Taylor> =
+        matrix(|i, j| at(series.iter().map(|c| c[i].by[j]), h) + Taylor::from(by_left_out[i][j]));
 
     // The motion from the centre: that from the middle of its box, and what its box becomes.
-    let from_middle = equations.series(mode, &states.middle, order - 1);
-    let reached = |i: usize| at(from_middle.iter().map(|c| c[i]), h) + Taylor::from(left_out[i]);
-    let reached: Family = std::array::from_fn(reached);
+    let from_middle = flow.series(&states.middle, order - 1);
+    let reached = |i: usize| at(from_middle.iter().map(|c| c[i]), h) + Taylor::from(anywhere[order][i]);
+    let reached: Family = array::from_fn(reached);
     let turned = times(&step.map(|row| row.map(Taylor::hull)), &states.frame.matrix());
-    let frame = Frame::along(&turned, &states.spread.map(Interval::magnitude), equations.scales);
+    let frame = Frame::along(&turned, &states.spread.map(Interval::magnitude), flow.equations.scales);
     let mut spread = frame.coordinates(&reached.map(Taylor::rest))?;
     for j in 0..STATE {
         let column = frame.coordinates(&turned.map(|row| row[j]))?;
@@ -148,17 +137,17 @@ fn step_of(
     }
     let by = times(&step, &states.by);
     let next = States { middle: reached.map(Taylor::polynomial), frame, spread, by, away: states.away };
-    let (mut power, mut at_start) = (Taylor::point(1.0), Vec::with_capacity(order));
-    for c in &series {
-        at_start.push(c.map(|c| c.value * power));
-        power = power * h;
-    }
-    let (mut power, mut anywhere) = (Interval::ONE, Vec::with_capacity(order + 1));
-    for c in &rough {
-        anywhere.push(c.map(|c| c.value * power));
-        power = power * length;
-    }
-    Some((next, Piece { mode, at_start, anywhere }))
+    Some((next, Piece { mode: flow.mode, at_start: in_shares(&series, h).0, anywhere }))
+}
+
+/// The terms of a series times the powers of the length of a step, and the power of the last one.
+fn in_shares<T: Number>(series: &[[Gradient<T>; STATE]], h: T) -> (Vec<[T; STATE]>, T) {
+    let mut power = T::constant(Interval::ONE);
+    let scaled = series.iter().enumerate().map(|(k, c)| {
+        power = if k == 0 { power } else { power * h };
+        c.map(|c| c.value * power)
+    });
+    (scaled.collect(), power)
 }
 
 impl Piece {
@@ -173,11 +162,8 @@ impl Piece {
 
     /// The Taylor series of one quantity over the step: the coefficients at its beginning, and the last one anywhere in it.
     pub fn series_of(&self, quantity: &impl Quantity) -> Vec<Taylor> {
-        let order = self.at_start.len();
         let mut series = quantity.series(self.mode, &self.at_start);
-        series.truncate(order);
-        let last = quantity.series(self.mode, &self.anywhere);
-        series.extend(last.get(order).map(|last| Taylor::from(*last)));
+        series.extend(quantity.series(self.mode, &self.anywhere).pop().map(Taylor::from));
         series
     }
 }
@@ -191,6 +177,7 @@ pub trait Quantity {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::equations::Equations;
     use retune_model::{Scene, Side};
 
     /// The paper's tuned damper.
@@ -205,19 +192,12 @@ pub(crate) mod tests {
     }
 
     /// The states from one state after `n` equal steps, and the motion between.
-    fn after(
-        order: usize,
-        equations: &Equations,
-        mode: Mode,
-        start: [f64; STATE],
-        h: f64,
-        n: usize,
-    ) -> (States, f64) {
+    fn after(order: usize, flow: Flow<'_>, start: [f64; STATE], h: f64, n: usize) -> (States, f64) {
         let mut states = States::first(&start.map(Taylor::point), [Interval::ZERO; STATE], identity());
         let mut left_out = 0.0;
         for _ in 0..n {
-            let (next, piece) = step_of(order, equations, mode, &states, Taylor::point(h / n as f64))
-                .unwrap_or_else(|| panic!("no step: {mode:?} {n}"));
+            let (next, piece) = step(flow, &states, Taylor::point(h / n as f64), order)
+                .unwrap_or_else(|| panic!("no step: {:?} {n}", flow.mode));
             left_out = f64::max(left_out, piece.left_out());
             states = next;
         }
@@ -234,9 +214,9 @@ pub(crate) mod tests {
     #[test]
     fn invariant_one_long_step_holds_what_many_short_ones_say() {
         for (mode, start, h) in STARTS {
-            let equations = scene();
-            let (one, rough) = after(6, &equations, mode, start, h, 1);
-            let (many, sharp) = after(ORDER, &equations, mode, start, h, 16);
+            let flow = Flow { equations: &scene(), mode };
+            let (one, rough) = after(6, flow, start, h, 1);
+            let (many, sharp) = after(ORDER, flow, start, h, 16);
             assert!(rough > 1e-10 && sharp < 1e-18, "{mode:?}: {rough:e} {sharp:e}");
             for i in 0..STATE {
                 let (wide, narrow) = (one.centre()[i].hull(), many.centre()[i].hull());
@@ -254,16 +234,16 @@ pub(crate) mod tests {
     #[test]
     fn invariant_a_box_holds_the_motions_from_its_corners() {
         for (mode, start, h) in STARTS {
-            let equations = scene();
+            let flow = Flow { equations: &scene(), mode };
             let r = 1e-5;
             let mut states =
                 States::first(&start.map(Taylor::point), [Interval::around_zero(r); STATE], identity());
             for _ in 0..8 {
-                states = step(&equations, mode, &states, Taylor::point(h / 8.0)).expect("a step").0;
+                states = step(flow, &states, Taylor::point(h / 8.0), ORDER).expect("a step").0;
             }
             for corner in 0..1 << STATE {
-                let from = std::array::from_fn(|i| start[i] + if corner >> i & 1 == 0 { -r } else { r });
-                let (own, _) = after(ORDER, &equations, mode, from, h, 8);
+                let from = array::from_fn(|i| start[i] + if corner >> i & 1 == 0 { -r } else { r });
+                let (own, _) = after(ORDER, flow, from, h, 8);
                 for i in 0..STATE {
                     let (own, all) = (own.centre()[i].hull(), states.all()[i].hull());
                     assert!(own.is_in(all.wider(own.width())), "{mode:?} {corner} {i}: {own} {all}");
@@ -278,7 +258,8 @@ pub(crate) mod tests {
     fn contract_no_box_is_found_for_too_long_a_step() {
         for (mode, start, _) in STARTS {
             let start = start.map(Interval::point);
-            assert_eq!(enclosure(&scene(), mode, &start, Interval::new(0.0, 3.0)), None, "{mode:?}");
+            let flow = Flow { equations: &scene(), mode };
+            assert_eq!(enclosure(flow, &start, Interval::new(0.0, 3.0)), None, "{mode:?}");
         }
     }
 }
