@@ -205,3 +205,21 @@ where
         self.search.record.value > self.cutoff
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A parabola with its vertex in the stretch rises exactly so far.
+    #[test]
+    fn exact_the_rise_of_a_parabola_above_its_ends() {
+        let (m, t) = (3.0, 0.7_f64);
+        for share in [0.01, 0.3, 0.5, 0.8] {
+            let [before, after] = [share * t, (1.0 - share) * t].map(|s| 0.5 * m * s * s);
+            let rise = rise_by_curvature((before - after).abs(), m * t * t);
+            assert!((rise / before.min(after) - 1.0).abs() < 1e-12, "{share}: {rise}");
+        }
+        assert_eq!(rise_by_curvature(0.5 * m * t * t, m * t * t), 0.0, "the slope is zero at an end at most");
+        assert_eq!(rise_by_curvature(1.0, f64::INFINITY), f64::INFINITY, "no bound");
+    }
+}
