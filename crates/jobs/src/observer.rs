@@ -11,6 +11,10 @@ pub trait Observer: Sync {
     fn result(&self, _line: &str) -> Result<(), Error> {
         Ok(())
     }
+    /// Receives the best of a stage, for who stops there.
+    fn so_far(&self, _line: &str) -> Result<(), Error> {
+        Ok(())
+    }
     /// Receives a line of the log.
     fn log(&self, _line: &str) -> Result<(), Error> {
         Ok(())

@@ -182,6 +182,9 @@ pub fn caught<T>(work: impl FnOnce() -> Result<T, Fault>) -> Result<T, Fault> {
 }
 
 impl Observer for Monitor {
+    fn so_far(&self, line: &str) -> Result<(), Error> {
+        self.result(line)
+    }
     fn result(&self, line: &str) -> Result<(), Error> {
         self.end_if_stopped();
         self.tell("result", line);

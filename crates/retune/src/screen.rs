@@ -51,6 +51,9 @@ impl Observer for Screen {
         }
         self.line(as_typed(line, std::env::var(interrupt::RUN_AS).ok()))
     }
+    fn so_far(&self, line: &str) -> Result<(), Error> {
+        if self.quiet { Ok(()) } else { self.result(line) }
+    }
     fn log(&self, line: &str) -> Result<(), Error> {
         if self.verbose { self.line(line) } else { Ok(()) }
     }

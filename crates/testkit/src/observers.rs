@@ -46,6 +46,9 @@ impl Record {
 }
 
 impl Observer for Record {
+    fn so_far(&self, line: &str) -> Result<(), Error> {
+        self.result(line)
+    }
     fn result(&self, line: &str) -> Result<(), Error> {
         self.keep(Kind::Result, line)
     }

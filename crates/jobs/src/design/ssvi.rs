@@ -145,7 +145,7 @@ pub(super) fn best(
     journal.check()?;
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     if let Some((value, (_, x))) = all.first().filter(|(value, _)| asked && *value < most) {
-        watch.result(&so_far(study, *value, x))?;
+        watch.so_far(&so_far(study, *value, x))?;
     }
     // Descents from outside limits are long.
     let descents = if tmd.feasible { DESCENTS } else { DESCENTS / 2 };
@@ -171,7 +171,7 @@ pub(super) fn best(
     journal.check()?;
     ends.sort_by(|a, b| a.0.total_cmp(&b.0));
     if let Some((value, x)) = ends.first().filter(|_| asked) {
-        watch.result(&so_far(study, *value, x))?;
+        watch.so_far(&so_far(study, *value, x))?;
     }
     let tried = objective.counts().evaluations + loose.counts().evaluations;
     Ok(Ends { ends, tried: tried as usize })

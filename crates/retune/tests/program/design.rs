@@ -34,6 +34,8 @@ fn contract_the_answer_of_the_readme_is_that_of_the_program() {
     assert!(tried.is_some_and(|tried| tried < 200), "{tried:?}");
     let verified = desk.run(&["verify", "results/design"]);
     assert_eq!(verified.code, Some(0), "{}{}", verified.stdout, verified.stderr);
+    let quiet = desk.run(&[&arguments[..], &["--quiet"]].concat());
+    assert!(quiet.code == Some(0) && !quiet.stdout.contains("so far"), "{}{}", quiet.stdout, quiet.stderr);
 }
 
 #[test]
