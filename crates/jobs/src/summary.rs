@@ -209,7 +209,7 @@ impl Summary {
             Measure::Stroke => self.spring_deflection_max,
             Measure::ContactForce => self.force_max.primary.max(self.force_max.obstacle),
             Measure::ContactPressure => self.pressure_max.primary.max(self.pressure_max.obstacle),
-            Measure::Stationary(rms) => self.largest(rms.largest()),
+            Measure::Stationary(_) => self.largest(measure.of_run()),
         }
     }
 
