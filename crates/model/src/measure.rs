@@ -94,7 +94,7 @@ impl Measure {
             Self::Acceleration => ACCELERATION,
             Self::GroundForce | Self::ContactForce => FORCE,
             Self::ContactPressure => MODULUS,
-            Self::Stationary(rms) => rms.largest().units(),
+            Self::Stationary(_) => self.of_run().units(),
         }
     }
 
@@ -111,7 +111,12 @@ impl Measure {
     /// The largest value of a run: itself, or that in the place of which a stationary motion has it.
     pub const fn of_run(self) -> Self {
         match self {
-            Self::Stationary(rms) => rms.largest(),
+            Self::Stationary(Rms::Energy) => Self::Energy,
+            Self::Stationary(Rms::Displacement) => Self::Displacement,
+            Self::Stationary(Rms::Velocity) => Self::Velocity,
+            Self::Stationary(Rms::Acceleration) => Self::Acceleration,
+            Self::Stationary(Rms::GroundForce) => Self::GroundForce,
+            Self::Stationary(Rms::Stroke) => Self::Stroke,
             largest => largest,
         }
     }
@@ -127,7 +132,7 @@ impl Measure {
             Self::Stroke => 5,
             Self::ContactForce => 6,
             Self::ContactPressure => 7,
-            Self::Stationary(rms) => rms.largest().index(),
+            Self::Stationary(_) => self.of_run().index(),
         }
     }
 

@@ -95,7 +95,7 @@ impl Response {
             Measure::Stroke => self.spring_deflection_max,
             Measure::ContactForce => self.force_max[0].max(self.force_max[1]),
             Measure::ContactPressure => self.pressure_max[0].max(self.pressure_max[1]),
-            Measure::Stationary(rms) => self.largest(rms.largest()),
+            Measure::Stationary(_) => self.largest(measure.of_run()),
         }
     }
 }

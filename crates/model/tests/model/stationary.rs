@@ -1,6 +1,6 @@
 //! Stationary random motion: the Lyapunov equation, the integral over a table, and optima of textbooks.
 
-use retune_model::{Rms, Scene, Stationary};
+use retune_model::{Measure, Rms, Scene, Stationary};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 
@@ -145,5 +145,19 @@ fn contract_what_is_not_stationary_has_no_means() {
     ] {
         let sentence = refused(spectrum);
         assert!(sentence.contains("or `white` with `to` alone"), "{sentence}");
+    }
+}
+
+#[test]
+fn contract_every_quantity_has_its_place_its_name_and_its_run() {
+    for (i, measure) in Measure::ALL.into_iter().enumerate() {
+        assert_eq!((measure.index(), measure.of_run()), (i, measure));
+    }
+    for rms in Rms::ALL {
+        let measure = Measure::Stationary(rms);
+        assert_eq!((measure.unit(), measure.index()), (measure.of_run().unit(), measure.of_run().index()));
+    }
+    for measure in Measure::every() {
+        assert_eq!(Measure::try_from(std::borrow::Cow::from(measure.name())), Ok(measure));
     }
 }
