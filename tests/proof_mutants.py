@@ -1,6 +1,6 @@
 """Removes each rounding and each remainder of crates/proof in turn, and sees whether one of its tests fails: results/robustness/proof-mutants.md.
 
-python3 tests/proof_mutants.py [WORD ...]: only those whose words hold one of these.
+python3 tests/proof_mutants.py [WORD ...]: only those whose words hold one of these; the others stay as the table has them.
 """
 
 import os
@@ -88,29 +88,41 @@ def tested():
     return failed_of("--lib") or failed_of("--test", "enclosures", "--test", "prove")
 
 
+def known():
+    """Which test caught which mutant, by the table."""
+    cells = [line.split(" | ") for line in OUT.read_text().splitlines() if line.count(" | ") == 2] if OUT.exists() else []
+    return {first.removeprefix("| "): test.removesuffix(" |") for first, _, test in cells[2:]}
+
+
+def write(found):
+    """The table, with what is known of each mutant."""
+    tests = [found.get(words, "not run") for words, *_ in MUTANTS]
+    caught = sum(test not in ("none", "not run") for test in tests)
+    head = (
+        "# Mutants of the proof\n\n`just lab proof-mutants` removed each rounding, remainder and check of `crates/proof` in turn (with words: those that its line holds); "
+        f"a test that then fails:\n\n{caught} of {len(MUTANTS)} are caught, {tests.count('none')} are not, {tests.count('not run')} were not run.\n\n"
+        "| removed | in | caught by |\n| --- | --- | --- |\n"
+    )
+    OUT.write_text(head + "".join(f"| {words} | {name}.rs | {test} |\n" for (words, name, *_), test in zip(MUTANTS, tests)))
+
+
 def main():
     copied()
     if (failed := tested()) is not None:
         sys.exit(f"a test fails as it is: {failed}")
-    rows, missed = [], []
-    chosen = [m for m in MUTANTS if not sys.argv[1:] or any(word in m[0] for word in sys.argv[1:])]
-    for words, name, before, after in chosen:
+    found = known() if sys.argv[1:] else {}
+    for words, name, before, after in MUTANTS:
+        if sys.argv[1:] and not any(word in words for word in sys.argv[1:]):
+            continue
         file = COPY / "crates" / "proof" / "src" / f"{name}.rs"
         text = file.read_text()
         if text.count(before) != 1:
             sys.exit(f"{words}: {name}.rs has this {text.count(before)} times: {before}")
         file.write_text(text.replace(before, after))
-        failed = tested()
+        found[words] = tested() or "none"
         file.write_text(text)
-        missed += [words] if failed is None else []
-        rows.append(f"| {words} | {name}.rs | {failed or 'none'} |")
-        print(rows[-1], flush=True)
-    if len(chosen) == len(MUTANTS):
-        head = (
-            "# Mutants of the proof\n\n`just lab proof-mutants` removed each rounding, remainder and check of `crates/proof` in turn; a test that then fails:\n\n"
-            f"{len(rows) - len(missed)} of {len(rows)} are caught.\n\n| removed | in | caught by |\n| --- | --- | --- |\n"
-        )
-        OUT.write_text(head + "\n".join(rows) + "\n")
+        print(f"| {words} | {name}.rs | {found[words]} |", flush=True)
+        write(found)
 
 
 if __name__ == "__main__":
