@@ -67,7 +67,7 @@ fn curve<'a>(rows: &[&'a Row], measure: Measure) -> Option<Curve<'a>> {
     let mut worst = ROUNDING;
     let mut points = Vec::new();
     for row in &sorted {
-        let error = row.errors[measure.index()];
+        let error = row.errors[measure as usize];
         if row.found.is_ok() && error.is_finite() {
             worst = worst.max(error);
             points.push((worst, *row));
