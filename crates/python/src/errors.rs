@@ -101,7 +101,11 @@ impl From<Unusable> for Fault {
             | Unusable::Member(source)
             | Unusable::Frequency(source) => Self::study(error.to_string(), Given::Number(source.value)),
             Unusable::Motions(retune_dynamics::Error::Run(error)) => Self::Solver(error),
-            Unusable::Touches { .. } | Unusable::Stopped | Unusable::Motions(_) | Unusable::NoDerivatives => {
+            Unusable::Touches { .. }
+            | Unusable::Stopped
+            | Unusable::Motions(_)
+            | Unusable::NoDerivatives
+            | Unusable::NotStationary => {
                 Self::Study { message: error.to_string(), field: None, given: Given::Nothing }
             }
         }
