@@ -1,9 +1,8 @@
 //! What moves the structure, over time: the curve under the motion.
 
 use crate::thin::{Thin, Thinning};
-use retune_model::{Course, Forcing, History, Of, Pulse, Samples, Shape, Source};
+use retune_model::{Course, Forcing, History, Of, Source};
 use serde_json::{Value, json};
-use std::f64::consts::PI;
 
 /// What is drawn of a forcing: its words and its unit; none of a free decay.
 pub fn forced(forcing: &Forcing) -> Option<Value> {
@@ -20,21 +19,6 @@ pub fn forced(forcing: &Forcing) -> Option<Value> {
     Some(json!({ "name": name, "words": words, "unit": unit }))
 }
 
-/// Its value at a time, in that unit; 0 of a free decay.
-pub fn at(forcing: &Forcing, t: f64) -> f64 {
-    let omega = forcing.frequency.get();
-    let turn = (omega * t).cos();
-    match &forcing.source {
-        Source::Force(force) => force.get() * turn,
-        Source::Imbalance(imbalance) => imbalance.get() * omega * omega * turn,
-        Source::Base(base) => base.get() * turn,
-        // The base moves by Y cos ωt with Y = a / ω².
-        Source::BaseAcceleration(base) => -base.get() * turn,
-        Source::Decay(_) => 0.0,
-        Source::History(history) => course(&history.course, t),
-    }
-}
-
 /// Points of a pulse, and of a column of pixels of a harmonic.
 const FINE: usize = 128;
 const SHARP: usize = 4;
@@ -42,7 +26,7 @@ const SHARP: usize = 4;
 /// Its curve over a span of time, s, thinned to columns of pixels: every sample of a record is looked at.
 pub fn curve(forcing: &Forcing, [from, to]: [f64; 2], columns: usize) -> Thin<1> {
     let mut thinning = Thinning::new([from, to], columns);
-    thinning.push(from, [at(forcing, from)]);
+    thinning.push(from, [forcing.at(from)]);
     let mut push = |t: f64, value: f64| {
         if from < t && t < to {
             thinning.push(t, [value]);
@@ -52,10 +36,10 @@ pub fn curve(forcing: &Forcing, [from, to]: [f64; 2], columns: usize) -> Thin<1>
         (0..=count).map(move |i| from + i as f64 / count as f64 * (to - from))
     };
     match forcing.history().map(|history| &history.course) {
-        None => even(SHARP * columns, [from, to]).for_each(|t| push(t, at(forcing, t))),
-        Some(Course::Pulse(pulse)) => {
-            let end = pulse.duration.get();
-            even(FINE, [0.0, end]).for_each(|t| push(t, of_pulse(pulse, t)));
+        None => even(SHARP * columns, [from, to]).for_each(|t| push(t, forcing.at(t))),
+        Some(course @ Course::Pulse(_)) => {
+            let end = course.end();
+            even(FINE, [0.0, end]).for_each(|t| push(t, course.at(t)));
             push(end, 0.0); // where it falls at once
         }
         Some(course) => {
@@ -65,49 +49,8 @@ pub fn curve(forcing: &Forcing, [from, to]: [f64; 2], columns: usize) -> Thin<1>
             push(samples.end(), 0.0);
         }
     }
-    thinning.push(to, [at(forcing, to)]);
+    thinning.push(to, [forcing.at(to)]);
     thinning.finish()
-}
-
-fn course(course: &Course, t: f64) -> f64 {
-    match course {
-        Course::Pulse(pulse) => of_pulse(pulse, t),
-        Course::Record(_) | Course::Made(_) => course.samples().map_or(0.0, |samples| between(samples, t)),
-    }
-}
-
-fn of_pulse(pulse: &Pulse, t: f64) -> f64 {
-    let share = t / pulse.duration.get();
-    match pulse.shape {
-        _ if !(0.0..=1.0).contains(&share) => 0.0,
-        Shape::HalfSine => pulse.peak() * (PI * share).sin(),
-        Shape::Rectangle => pulse.peak(),
-        Shape::VersedSine => 0.5 * pulse.peak() * (1.0 - (2.0 * PI * share).cos()),
-    }
-}
-
-/// A straight line between two samples; nothing before the first and after the last.
-fn between(samples: &Samples, t: f64) -> f64 {
-    let (mut low, mut high) = (0, samples.len());
-    while low < high {
-        let middle = usize::midpoint(low, high);
-        if samples.time(middle) <= t { low = middle + 1 } else { high = middle }
-    }
-    let values = samples.values();
-    match low {
-        0 => 0.0,
-        after if after == samples.len() => {
-            if t > samples.end() {
-                0.0
-            } else {
-                values[after - 1]
-            }
-        }
-        after => {
-            let [from, to] = [after - 1, after].map(|i| samples.time(i));
-            values[after - 1] + (t - from) / (to - from) * (values[after] - values[after - 1])
-        }
-    }
 }
 
 #[cfg(test)]
@@ -140,7 +83,7 @@ mod tests {
     fn exact_the_curve_of_a_pulse_of_a_record_and_of_a_harmonic() {
         let half =
             forcing(json!({ "pulse": "half sine", "of": "force", "peak": 2, "unit": "kN", "duration": 0.1 }));
-        let found = [-0.01, 0.0, 0.025, 0.05, 0.11].map(|t| at(&half, t));
+        let found = [-0.01, 0.0, 0.025, 0.05, 0.11].map(|t| half.at(t));
         let expected = [0.0, 0.0, 2000.0 * 0.5_f64.sqrt(), 2000.0, 0.0];
         assert!(
             found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-9),
@@ -148,10 +91,10 @@ mod tests {
         );
         let mut record = forcing(json!({ "record": "a.csv", "of": "base acceleration", "unit": "g" }));
         retune_study::read_record_text(&mut record, "t,a\n1,0\n2,1\n4,-1\n").expect("a record");
-        let found = [0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 4.5].map(|t| at(&record, t) / 9.80665);
+        let found = [0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 4.5].map(|t| record.at(t) / 9.80665);
         assert_eq!(found, [0.0, 0.0, 0.5, 1.0, 0.0, -1.0, 0.0]);
         let imbalance = forcing(json!({ "imbalance": 0.5, "omega": 4 }));
-        assert_eq!(at(&imbalance, 0.0), 8.0);
+        assert_eq!(imbalance.at(0.0), 8.0);
         assert_eq!(forced(&imbalance).map(|said| said["unit"].clone()), Some(json!("N")));
         assert_eq!(forced(&forcing(json!({ "start": { "x1": 1 } }))), None);
     }

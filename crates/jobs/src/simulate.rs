@@ -96,9 +96,10 @@ struct Means(Stationary);
 
 impl Means {
     fn of(study: &Study) -> Option<Self> {
-        let walls = study.scene.damper.and_then(|damper| damper.contact);
-        let found = walls.map_or_else(|| Stationary::new(&study.scene, study.solver.rtol), |_| None);
-        found.map(Self)
+        if study.scene.damper.is_some_and(|damper| damper.contact.is_some()) {
+            return None;
+        }
+        Stationary::new(&study.scene, study.solver.rtol).map(Self)
     }
 
     fn each(&self) -> impl Iterator<Item = (Measure, f64)> + '_ {

@@ -100,6 +100,22 @@ impl Forcing {
         }
     }
 
+    /// What acts at `t` (s): the force on the structure, N, the displacement of the base, m, or its acceleration, m/s², whichever the forcing
+    /// is given as (of an imbalance its force); 0 of a free decay.
+    pub fn at(&self, t: f64) -> f64 {
+        let omega = self.frequency.get();
+        let turn = (omega * t).cos();
+        match &self.source {
+            Source::Force(force) => force.get() * turn,
+            Source::Imbalance(imbalance) => imbalance.get() * omega * omega * turn,
+            Source::Base(base) => base.get() * turn,
+            // The base moves by Y cos ωt with Y = a / ω².
+            Source::BaseAcceleration(base) => -base.get() * turn,
+            Source::Decay(_) => 0.0,
+            Source::History(history) => history.course.at(t),
+        }
+    }
+
     /// The transmissibility of a motion with these largest values (m, N): the force on the ground over the amplitude of the force on
     /// the structure; on a moving base the displacement of the structure over that of the base. NaN or infinite where nothing moves it.
     pub fn transmissibility(&self, displacement: f64, ground_force: f64) -> f64 {

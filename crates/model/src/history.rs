@@ -190,6 +190,17 @@ impl Course {
         }
     }
 
+    /// Its value at `t` (s), N or m/s², by the pair of its stretch; at its end that before it.
+    pub fn at(&self, t: f64) -> f64 {
+        if t < 0.0 {
+            return 0.0;
+        }
+        let within = if t == self.end() { t.next_down() } else { t };
+        let (Stretch { from, begin: [f, s], .. }, [omega, returns]) = (self.stretch(within), self.turning());
+        let turned = omega * (t - from);
+        if returns == 0.0 { f - turned * s } else { f * turned.cos() - s * turned.sin() }
+    }
+
     /// When it is over, s.
     pub fn end(&self) -> f64 {
         match self {

@@ -291,15 +291,15 @@ impl Spectrum {
     fn is_table(&self) -> bool {
         let Self { omega, density, white, to, .. } = self;
         if white.is_some() || to.is_some() {
-            return self.is_white().is_some() && omega.is_empty() && density.is_empty();
+            return self.white_density().is_some() && omega.is_empty() && density.is_empty();
         }
         omega.len() >= 2
             && omega.len() == density.len()
             && omega.windows(2).all(|pair| pair[0].get() < pair[1].get())
     }
 
-    /// The density of white noise, if it is some.
-    pub fn is_white(&self) -> Option<f64> {
+    /// The one-sided density of white noise, the square of the unit times s/rad; none of a table.
+    pub fn white_density(&self) -> Option<f64> {
         self.to.and(self.white).map(NonNegative::get)
     }
 
@@ -327,7 +327,7 @@ impl Spectrum {
     }
 
     pub(crate) fn density_at(&self, omega: f64) -> f64 {
-        if let Some(white) = self.is_white() {
+        if let Some(white) = self.white_density() {
             return white;
         }
         let i = self.omega.partition_point(|known| known.get() <= omega).clamp(1, self.omega.len() - 1);

@@ -35,7 +35,7 @@ impl Stationary {
         let (recipe, spectrum) = (made.recipe(), course.spectrum()?);
         let linear = Linear::new(&scene.primary, scene.damper.as_ref(), *of);
         let size = recipe.unit.1 * recipe.unit.1;
-        let (squares, error) = match spectrum.is_white() {
+        let (squares, error) = match spectrum.white_density() {
             Some(density) => (linear.under_white(size * density)?, 0.0),
             None => {
                 linear.under(spectrum, tolerance).map(|(all, error)| (all.map(|one| size * one), error))?

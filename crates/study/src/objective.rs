@@ -152,7 +152,7 @@ fn check_stationary(objective: &Objective, path: &str, scene: &Scene) -> Result<
                        leave out `contact` for the damper without walls";
         return bad("quantity", quantity, allowed);
     }
-    let of_force = of == Of::Force && spectrum.is_white().is_some();
+    let of_force = of == Of::Force && spectrum.white_density().is_some();
     if objective.quantity == Measure::Stationary(Rms::Acceleration) && of_force {
         return bad(
             "quantity",

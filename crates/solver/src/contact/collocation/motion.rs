@@ -213,8 +213,8 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
             from: &from,
             slope: &derivative,
             length,
-            // Nodes are about as far apart as the steps that `rtol` asks for, and farther near the ends. Twelve at a common tolerance, as in contacts
-            // that lose energy, are closer.
+            // Nodes are about as far apart as the steps that `rtol` asks for, and farther near the ends. Where energy is lost a contact has twelve at
+            // tolerances for which one without loss has eight: one step is enough.
             steps: if N == 12 && self.of.loss.is_some() { 1 } else { 2 },
             ends,
             energy: f64::INFINITY,
