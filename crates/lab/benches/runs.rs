@@ -98,9 +98,12 @@ fn walls(criterion: &mut Criterion) {
             ("rigid", Numbers { rigid: Some(0.7), ..numbers }),
         ] {
             let scene = numbers.scene();
-            group.bench_function(format!("{name}, {walls}"), |bencher| {
-                bencher.iter(|| e1_max(black_box(&scene), WHOLE, &Settings::default(), f64::INFINITY));
-            });
+            for rtol in [1e-6, 1e-10] {
+                let settings = Settings { rtol, ..Settings::default() };
+                group.bench_function(format!("{name}, {walls}, rtol {rtol:e}"), |bencher| {
+                    bencher.iter(|| e1_max(black_box(&scene), WHOLE, &settings, f64::INFINITY));
+                });
+            }
         }
     }
     group.finish();
