@@ -178,7 +178,12 @@ impl Coupled {
     /// The factor of Hertz's force at the indentation `q²` (m) that changes at the rate `w` (m/s).
     #[inline]
     pub(crate) fn wall_factor(&self, side: Side, q: f64, w: f64) -> Factor {
-        self.law(side).factor(|| 0.4 * self.hertz(side) * self.inverse_effective_mass() * q.powi(5), w)
+        self.law(side).factor(|| self.half_square(side, q), w)
+    }
+
+    /// Half of the square of the speed (m/s) of an undisturbed collision without loss that comes as far as the indentation `q²` (m).
+    pub(crate) fn half_square(&self, side: Side, q: f64) -> f64 {
+        0.4 * self.hertz(side) * self.inverse_effective_mass() * q.powi(5)
     }
 
     /// The radius of the contact area at an indentation `z` (m), m: `√(R z)` (Johnson, p. 92).

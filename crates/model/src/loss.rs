@@ -168,12 +168,21 @@ impl Law {
             Self::Damping(lambda) => {
                 let f = 1.0 + lambda * w;
                 if f > -ROUNDING {
-                    Factor { f: f.max(0.0), by_w: *lambda, by_own: w, ..Factor::default() }
+                    Factor { f: f.max(0.0), by_w: *lambda, ..Factor::default() }
                 } else {
                     Factor::default()
                 }
             }
             Self::Restoring(law) => law.factor(s(), w),
+        }
+    }
+
+    /// The derivative of the factor by the number of the law itself, λ or e.
+    pub(crate) fn by_own(&self, s: impl FnOnce() -> f64, w: f64) -> f64 {
+        match self {
+            Self::Damping(lambda) if 1.0 + lambda * w > -ROUNDING => w,
+            Self::Damping(_) => 0.0,
+            Self::Restoring(law) => law.by_restitution(s(), w),
         }
     }
 

@@ -66,12 +66,14 @@ impl Coupled {
     /// The net force of a contact on the damper, N, and its derivative by a parameter, the state held; of the contact with a wall at the
     /// indentation `q²` (m), which grows at the rate `w` (m/s).
     pub fn contact_force_by(&self, parameter: Parameter, side: Side, q: f64, w: f64) -> [f64; 2] {
-        let Factor { f, by_z, by_own, .. } = self.wall_factor(side, q, w);
+        let Factor { f, by_z, .. } = self.wall_factor(side, q, w);
         let hertz = -side.sign() * self.hertz(side) * q * q * q;
         let force = hertz * f;
         // The factor depends on z by z^(5/2) K (1/m1 + 1/m2).
         let own = match parameter {
-            Parameter::Lambda | Parameter::Restitution => hertz * by_own,
+            Parameter::Lambda | Parameter::Restitution => {
+                hertz * self.law(side).by_own(|| self.half_square(side, q), w)
+            }
             Parameter::M2 => {
                 let (m2, ..) = self.damper();
                 -hertz * 0.4 * by_z / (m2 * m2 * self.inverse_effective_mass())

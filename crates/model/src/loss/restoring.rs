@@ -20,14 +20,12 @@ use crate::kept::Kept;
 use std::sync::Arc;
 use wide::f64x4;
 
-/// The factor `f` of Hertz's force at an indentation `z` that changes at the rate `w`, with its derivatives: those by `z` times `z`, and
-/// `by_own`, that by the number of the law itself, λ or e.
+/// The factor `f` of Hertz's force at an indentation `z` that changes at the rate `w`, with its derivatives: those by `z` times `z`.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Factor {
     pub f: f64,
     pub by_z: f64,
     pub by_w: f64,
-    pub by_own: f64,
     pub by_zz: f64,
     pub by_zw: f64,
     pub by_ww: f64,
@@ -133,7 +131,12 @@ impl Restoring {
 
     /// The stage with this h between -e and 1; v is left open.
     pub(crate) fn stage_at(&self, h: f64) -> Stage {
-        self.at(if h <= -self.e { self.logs[1] } else { (self.chi * h).ln_1p().max(self.logs[1]) })
+        let log = (self.chi * h).ln_1p();
+        if h <= -self.e || log <= self.logs[1] {
+            self.at(self.logs[1])
+        } else {
+            self.with(log, 1.0 + self.chi * h, h)
+        }
     }
 
     /// e.
@@ -246,8 +249,7 @@ impl Restoring {
             return Factor { f: 1.0, ..Factor::default() };
         }
         let chi = self.chi;
-        let stage = self.stage(s, w);
-        let Stage { h, v, f, g, d, .. } = stage;
+        let Stage { h, v, f, g, d, .. } = self.stage(s, w);
         let along = 2.0 * f * g / d; // dh/du / √G
         let bend = (2.0 * chi * g - 3.0 * h - 4.0 * chi * f * g * g / d) * along / d; // d²h/du² / G
         let (first, second) = (h * along, h * h * bend); // u h', u² h''
@@ -255,11 +257,19 @@ impl Restoring {
             f,
             by_z: -1.25 * chi * first,
             by_w: chi * along / v,
-            by_own: self.chi_by_e * (h + chi * self.h_by_chi(stage)),
             by_zz: chi * (1.5625 * (first + second) + 1.25 * first),
             by_zw: -1.25 * chi * (along + h * bend) / v,
             by_ww: chi * bend / (v * v),
         }
+    }
+
+    /// The derivative of the factor by e.
+    pub(crate) fn by_restitution(&self, s: f64, w: f64) -> f64 {
+        if s == 0.0 && w == 0.0 {
+            return 0.0;
+        }
+        let stage = self.stage(s, w);
+        self.chi_by_e * (stage.h + self.chi * self.h_by_chi(stage))
     }
 
     /// `dh/dχ` at one S and ż: `h f / D ∂G/∂χ`, with `∂G/∂χ = -∫_h^1 s² / (1 + χ s)² ds`.
@@ -343,8 +353,8 @@ mod tests {
     fn regress_derivatives_where_the_force_vanishes_are_finite() {
         let law = Restoring::new(1e-3);
         for w in [-0.999e-3, -0.9e-3, -1e-4, 0.0, 1.0] {
-            let Factor { f, by_z, by_w, by_own, .. } = law.factor(1e-9, w);
-            assert!([f, by_z, by_w, by_own].iter().all(|number| number.is_finite()), "{w}: {f} {by_own}");
+            let (Factor { f, by_z, by_w, .. }, by_e) = (law.factor(1e-9, w), law.by_restitution(1e-9, w));
+            assert!([f, by_z, by_w, by_e].iter().all(|number| number.is_finite()), "{w}: {f} {by_e}");
         }
     }
 
@@ -356,7 +366,8 @@ mod tests {
             // S = z^(5/2), so that z is the fifth root of S².
             let at = |z: f64, w: f64| law.factor(z.powf(2.5), w);
             for (z, w) in [(0.7, 1.0), (0.3, 0.2), (1.3, -0.4), (0.5, -2.0), (0.9, 0.0), (0.02, 1.0)] {
-                let Factor { by_z, by_w, by_own, by_zz, by_zw, by_ww, .. } = at(z, w);
+                let Factor { by_z, by_w, by_zz, by_zw, by_ww, .. } = at(z, w);
+                let by_e = law.by_restitution(z.powf(2.5), w);
                 let (dz, dw, de) = (1e-5 * z, 1e-5, 1e-6);
                 let by_differences = [
                     z * (at(z + dz, w).f - at(z - dz, w).f) / (2.0 * dz),
@@ -369,7 +380,7 @@ mod tests {
                     (at(z, w + dw).by_w - at(z, w - dw).by_w) / (2.0 * dw),
                 ];
                 for (found, expected) in
-                    [by_z, by_w, by_own, by_zz, by_zw, by_ww].into_iter().zip(by_differences)
+                    [by_z, by_w, by_e, by_zz, by_zw, by_ww].into_iter().zip(by_differences)
                 {
                     let size = 1.0 + expected.abs();
                     assert!((found - expected).abs() < 2e-6 * size, "{e} {z} {w}: {found} {expected}");

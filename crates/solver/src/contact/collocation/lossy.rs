@@ -15,15 +15,12 @@ use super::newton::Extended;
 use super::nodes::{Nodes, at_nodes, dot, product};
 use super::response::{Collisions, FREE};
 use super::rule::Rule;
-use super::solve::{Found, MAX_ITERATIONS, Pushed, TAIL, error, free_terms, size};
+use super::solve::{Found, MAX_ITERATIONS, Pushed, error, free_terms, size};
 use super::unit_law::UnitLaw;
 use crate::motion::knot::Knot;
 use crate::motion::linearised::MOMENTS;
 use crate::motion::polynomial::Polynomial;
 use wide::f64x4;
-
-/// As `TAIL`, for each rule. With few nodes the inside of a contact with much loss has more error than its end.
-const LOSSY_TAIL: [f64; 4] = [4e-3, TAIL[2], TAIL[2], TAIL[2]];
 
 /// A contact in the units of its undisturbed collision.
 struct Contact<'a, const N: usize, const M: usize> {
@@ -127,7 +124,7 @@ impl Collisions {
         let contact = Contact { of: self, rule, terms, depth, speed, undisturbed, weights, approach, pace };
         let mut unknowns: Extended<M> = (of.forces, 1.0);
         let mut amounts = UNDISTURBED;
-        let mut before = 1.0_f64;
+        let (mut before, mut last_gain) = (1.0_f64, 0.0_f64);
         for iterations in 1..=MAX_ITERATIONS {
             let Motion { depths, speeds, end } = contact.motion(unknowns.1, moments, last);
             // At first the force is taken as linear: before the duration fits, depths near the end may be below zero.
@@ -160,15 +157,17 @@ impl Collisions {
             }
             unknowns = (std::array::from_fn(|i| unknowns.0[i] - change[i]), unknowns.1 - lengthening);
             contact.take(&change, size, moments, last);
-            // Each step gains at least as much as the last.
-            if size * size <= 0.3 * self.rtol * before {
+            // Each step gains about as much as the last two, of which one may have gained more by chance; the first corrects what others cannot.
+            let gain = size / before;
+            let gains = if iterations > 2 { gain.max(last_gain) } else { gain };
+            if size * gains <= 0.3 * self.rtol {
                 let Motion { depths, .. } = contact.motion(unknowns.1, moments, last);
                 let duration = unknowns.1 * undisturbed;
-                let error = error(rule, &unknowns.0, LOSSY_TAIL[N / 4 - 3]);
+                let error = error(rule, &unknowns.0, of.tail);
                 let is_right = error <= self.rtol && touch.t + duration < to;
                 return is_right.then_some(Found { depth, terms, depths, duration, iterations });
             }
-            before = size;
+            (before, last_gain) = (size, gain);
         }
         None
     }

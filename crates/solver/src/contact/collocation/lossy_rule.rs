@@ -4,7 +4,7 @@ use super::disturbed::{Amounts, Disturbed, DisturbedMotion, Linear};
 use super::newton::Newton;
 use super::node_law::NodeLaw;
 use super::nodes::{Nodes, packed};
-use super::rule::{Integrals, Rule};
+use super::rule::{Integrals, Rule, TAIL};
 use super::undisturbed::{Lossy, leaning};
 use super::unit_law::UnitLaw;
 use nalgebra::{DMatrix, DVector};
@@ -26,12 +26,31 @@ pub struct LossyRules {
     pub some: LossyRule<16, 4>,
     pub more: LossyRule<20, 5>,
     pub many: LossyRule<24, 6>,
+    /// The least tolerances at which common contacts pass the error estimate of all but the last.
+    pub suffice: [f64; 3],
+}
+
+/// The error of the end of a contact over `tail^1.25`, for the rule of N nodes, as `TAIL`. With few nodes the inside of a contact with much
+/// loss has more error than its end; with much loss the branch point is near (see `leaning`), and but for the most nodes coefficients fall
+/// slowly.
+fn tail<const N: usize>(law: &UnitLaw) -> f64 {
+    let slowly = match law {
+        UnitLaw::Restoring(law) if N < 24 => (0.5 / law.restitution()).powi(4).max(1.0),
+        _ => 1.0,
+    };
+    slowly * if N == 12 { 4e-3 } else { TAIL[2] }
 }
 
 impl LossyRules {
     fn new(law: &UnitLaw) -> Self {
         let undisturbed = Lossy::new(law);
+        let suffice = match law {
+            UnitLaw::Restoring(law) if law.restitution() < 0.65 => [1e-7, 1e-9, 1e-11],
+            UnitLaw::Restoring(_) => [1e-7, 1e-10, 1e-11],
+            UnitLaw::Damping(_) => [1e-7, 1e-10, 1e-12],
+        };
         Self {
+            suffice,
             few: LossyRule::new(law, &undisturbed),
             some: LossyRule::new(law, &undisturbed),
             more: LossyRule::new(law, &undisturbed),
@@ -96,6 +115,8 @@ pub struct LossyRule<const N: usize, const M: usize> {
     pub slopes: [Nodes<M>; 2],
     /// The law at the nodes, if it is one of the same restitution at every speed.
     pub law: Option<NodeLaw<M>>,
+    /// The error of the end of a contact over `tail^1.25`.
+    pub tail: f64,
     /// The iteration from there.
     pub newton: Newton<N, M>,
 }
@@ -103,7 +124,7 @@ pub struct LossyRule<const N: usize, const M: usize> {
 impl<const N: usize, const M: usize> LossyRule<N, M> {
     fn new(law: &UnitLaw, undisturbed: &Lossy) -> Self {
         let duration = undisturbed.duration;
-        let (rule, integrals) = Rule::new(leaning, undisturbed.force(law), undisturbed.depth());
+        let (rule, integrals) = Rule::new(leaning(law), undisturbed.force(law), undisturbed.depth());
         let Integrals { depths, forces, .. } = &integrals;
         let speeds: [f64; N] = std::array::from_fn(|i| 1.0 - 1.25 * duration * integrals.whole(0, i));
         let slopes: [[f64; 2]; N] = std::array::from_fn(|i| force(law, depths[i], speeds[i]).1);
@@ -111,6 +132,7 @@ impl<const N: usize, const M: usize> LossyRule<N, M> {
         let equations = Equations { law, motion: DisturbedMotion { duration, integrals: &integrals } };
         Self {
             duration,
+            tail: tail::<N>(law),
             forces: packed(forces),
             speeds: packed(&speeds),
             slopes: [0, 1].map(|by| packed::<N, M>(&slopes.map(|slopes| slopes[by]))),

@@ -24,6 +24,7 @@ fn extended<const N: usize, const M: usize>(number: impl Fn(usize) -> f64) -> Ex
 }
 
 /// A matrix of `N + 1` rows and columns: `body[j]` for node `j` and the last column, all but their last rows, which are `row`.
+#[repr(C, align(64))]
 struct Bordered<const N: usize, const M: usize> {
     body: [Nodes<M>; N],
     column: Nodes<M>,

@@ -102,7 +102,6 @@ impl Piece {
 
 #[cfg(test)]
 mod tests {
-    use super::super::lossy_rule::Loss;
     use super::super::nodes::node;
     use super::*;
     use retune_model::Side;
@@ -135,11 +134,10 @@ mod tests {
     /// Once narrowed without end: next to the least restitution that has a table the law itself has more rounding.
     #[test]
     fn regress_a_law_that_no_polynomial_meets_has_none() {
-        let equations = Numbers { e: 0.3005, ..SSVI }.coupled().regularised_contact(Side::Primary);
-        let loss = Loss::of(&equations).expect("a loss");
-        let (rules, _) = loss.rules(1.0).expect("rules");
-        assert!(
-            [rules.some.law.is_none(), rules.more.law.is_none(), rules.many.law.is_none()].contains(&true)
-        );
+        let equations = Numbers { e: 0.301, ..SSVI }.coupled().regularised_contact(Side::Primary);
+        let law = UnitLaw::Restoring(Arc::clone(equations.restoring().expect("a restitution")));
+        // x = ż / √(ż² + z^(5/2))
+        let polynomials = |x: f64| NodeLaw::<1>::new(&law, &[(1.0 - x * x).powf(0.4); 4], &[x; 4]);
+        assert!(polynomials(0.992).is_none() && polynomials(0.5).is_some());
     }
 }

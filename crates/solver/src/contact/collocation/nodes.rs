@@ -1,7 +1,7 @@
 //! Numbers at the nodes of a rule, four side by side.
 
 use crate::motion::polynomial::Polynomial;
-use wide::f64x4;
+use wide::{f64x4, f64x8};
 
 /// A number for each of `4 M` nodes.
 pub type Nodes<const M: usize> = [f64x4; M];
@@ -38,18 +38,41 @@ pub fn at_nodes<const B: usize, const M: usize>(
 /// `Σ_j columns[j] vector[j]`, in two chains of dependent operations.
 #[inline(always)]
 pub fn product<const N: usize, const M: usize>(columns: &[Nodes<M>; N], vector: &Nodes<M>) -> Nodes<M> {
-    let (mut sum, mut other) = ([f64x4::ZERO; M], [f64x4::ZERO; M]);
     let mut numbers = [0.0; N];
     for (four, lanes) in numbers.as_chunks_mut().0.iter_mut().zip(vector) {
         *four = lanes.to_array();
     }
+    // Eight nodes side by side where the processor can, four more if there are.
+    let (mut sum, mut other) = ([f64x8::ZERO; M], [f64x8::ZERO; M]);
+    let (mut sum_last, mut other_last) = (f64x4::ZERO, f64x4::ZERO);
     for j in 0..N / 2 {
-        for i in 0..M {
-            sum[i] += columns[j][i] * numbers[j];
-            other[i] += columns[N / 2 + j][i] * numbers[N / 2 + j];
+        let (column, beyond) = (&columns[j], &columns[N / 2 + j]);
+        for i in 0..M / 2 {
+            sum[i] += eight(column, i) * numbers[j];
+            other[i] += eight(beyond, i) * numbers[N / 2 + j];
+        }
+        if M % 2 == 1 {
+            sum_last += column[M - 1] * numbers[j];
+            other_last += beyond[M - 1] * numbers[N / 2 + j];
         }
     }
-    std::array::from_fn(|i| sum[i] + other[i])
+    let mut all = [sum_last + other_last; M];
+    for i in 0..M / 2 {
+        let [low, high] = halves(sum[i] + other[i]);
+        all[2 * i] = low;
+        all[2 * i + 1] = high;
+    }
+    all
+}
+
+#[inline(always)]
+fn eight<const M: usize>(nodes: &Nodes<M>, i: usize) -> f64x8 {
+    bytemuck::cast([nodes[2 * i], nodes[2 * i + 1]])
+}
+
+#[inline(always)]
+fn halves(nodes: f64x8) -> [f64x4; 2] {
+    bytemuck::cast(nodes)
 }
 
 /// `Σ a b`, in four chains.

@@ -6,7 +6,7 @@ use super::motion::Collision;
 use super::newton::Newton;
 use super::nodes::{Nodes, at_nodes, dot, product};
 use super::response::{Collisions, FREE};
-use super::rule::Rule;
+use super::rule::{Rule, TAIL};
 use super::undisturbed::{DURATION, clock, undisturbed_force};
 use super::unit_law::UnitLaw;
 use crate::linear::flow::{Expansion, Flow};
@@ -30,11 +30,6 @@ fn lossless<const N: usize, const M: usize>() -> Lossless<N, M> {
     let (start, solve) = without_loss(&integrals);
     (rule, Newton::new(&start, 2, solve))
 }
-
-/// The error of the end of a contact over `tail^1.25`, for each rule, where the tail of its force's expansion is the root of the
-/// sum of squares of the two highest coefficients. Calibrated on contacts drawn at random; the test
-/// `reference_contacts_at_once_agree_with_contacts_step_by_step` checks the resulting errors.
-pub(super) const TAIL: [f64; 3] = [1.8e-3, 3.5e-4, 2.9e-4];
 
 /// Most iterations: one that has not converged by then converges too slowly.
 pub(super) const MAX_ITERATIONS: u32 = 16;
@@ -86,15 +81,9 @@ impl Collisions {
         if speed.is_nan() || speed <= 0.0 {
             return None;
         }
-        let (LossyRules { few, some, more, many }, law) = loss.rules(speed)?;
-        // At these tolerances common contacts pass the error estimate of the rule.
-        let (some_suffice, more_suffice) = match law {
-            UnitLaw::Damping(_) => (self.rtol >= 1e-10, self.rtol >= 1e-12),
-            UnitLaw::Restoring(_) => (self.rtol >= 1e-9, self.rtol >= 1e-11),
-        };
-        if self.rtol >= 1e-7
-            && let Some(end) = self.solve_lossy(few, &law, flow, &touch, to, observer)
-        {
+        let (LossyRules { few, some, more, many, suffice }, law) = loss.rules(speed)?;
+        let [few_suffice, some_suffice, more_suffice] = suffice.map(|least| self.rtol >= least);
+        if few_suffice && let Some(end) = self.solve_lossy(few, &law, flow, &touch, to, observer) {
             return Some(end);
         }
         if some_suffice && let Some(end) = self.solve_lossy(some, &law, flow, &touch, to, observer) {

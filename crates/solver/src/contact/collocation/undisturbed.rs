@@ -16,18 +16,26 @@ pub fn clock(u: f64) -> [f64; 2] {
     [u * u * (3.0 - 2.0 * u), 6.0 * u * (1.0 - u)]
 }
 
-/// Where, in terms of the other clock, that of lossy collisions runs slowest, and over which width.
-const SLOW: [f64; 2] = [0.4, 0.2];
+/// Where, in terms of the other clock, that of lossy collisions runs slowest, and over which width: those by which many contacts drawn at
+/// random fit few nodes, and their insides with them.
+fn slow(law: &UnitLaw) -> [f64; 2] {
+    match law {
+        UnitLaw::Restoring(law) => [0.355 + 0.16 * law.restitution(), 0.21],
+        UnitLaw::Damping(_) => [0.42, 0.24],
+    }
+}
 
-/// `τ` and `dτ/du` of the clock of lossy collisions. Once one is disturbed its law has a branch point (`D = 0`) near the first half of the contact,
-/// from `0.20 ± 0.16 i` of the other clock for e = 0.3 to `0.32 ± 0.30 i` for 0.9 (`tests/reference/branch_point.py`). A hyperbolic sine moves a pair of singularities as far away as can be (T. W. Tee and
-/// L. N. Trefethen, SIAM J. Sci. Comput. 28 (2006) 1798); place and width are those by which the most contacts drawn at random fit.
-pub fn leaning(u: f64) -> [f64; 2] {
-    let [place, width] = SLOW;
+/// `τ` and `dτ/du` of the clock of lossy collisions. Once one is disturbed the law of a restitution has a branch point (`D = 0`) near the first
+/// half of the contact, from `0.20 ± 0.16 i` of the other clock for e = 0.3 to `0.32 ± 0.30 i` for 0.9 (`tests/reference/branch_point.py`). A
+/// hyperbolic sine moves a pair of singularities as far away as can be (T. W. Tee and L. N. Trefethen, SIAM J. Sci. Comput. 28 (2006) 1798).
+pub fn leaning(law: &UnitLaw) -> impl Fn(f64) -> [f64; 2] + Copy + use<> {
+    let [place, width] = slow(law);
     let [low, high] = [-place / width, (1.0 - place) / width].map(f64::asinh);
-    let at = low + (high - low) * u;
-    let [time, rate] = clock(place + width * at.sinh());
-    [time, rate * width * at.cosh() * (high - low)]
+    move |u| {
+        let at = low + (high - low) * u;
+        let [time, rate] = clock(place + width * at.sinh());
+        [time, rate * width * at.cosh() * (high - low)]
+    }
 }
 
 /// Nodes on which the undisturbed collision is kept.
@@ -63,7 +71,7 @@ impl Lossy {
         let slope = |&[q, w, _]: &[f64; 3]| [0.5 * w, -1.25 * q.powi(4) * law.push(0.5 * q.powi(5), w), q];
         let duration = lift_off(slope);
         let (nodes, _) = gauss(NODES, 0);
-        Self { duration, states: along(slope, duration, leaning, &nodes), nodes }
+        Self { duration, states: along(slope, duration, leaning(law), &nodes), nodes }
     }
 
     /// The force over the clock, in units of `K Z^(3/2)`.
