@@ -38,6 +38,7 @@ MUTANTS = [
     ("box about the centre", "step", "plus(&self.centre(), &array::from_fn(moved))", "{ let _ = moved; self.centre() }"),
     ("way of a step within its box", "step", "if (0..STATE).all(|i| next[i].is_in(e[i]))", "if next[0].is_bounded()"),
     ("frame that is orthogonal to rounding", "small", "Some(b.map(|b| b + off))", "{ let _ = off; Some(b) }"),
+    ("centre among the states of a box", "segment", "wide[i] = away.hull(Interval::ZERO)", "wide[i] = *away"),
     ("gaps during a segment", "segment", "if !Range::new(piece.series_of(section)).is_positive(starts, ends)", "if false && starts && ends"),
     ("gaps about its end", "segment", "if !section.is_towards(left)", "if left.hi().is_nan()"),
     ("force of a contact that may end", "segment", "all.push((Event::Pull, -(Interval::ONE / lambda)));", "let _ = lambda;"),
