@@ -260,7 +260,9 @@ pub fn rest_of_contact(equations: &Equations, side: Side, mut state: [f64; STATE
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::largest::largest;
     use crate::step::tests::scene;
+    use std::slice;
 
     /// A crest at the phase 0.1, 16 ms on, by a plan of one step of 1 ms: on the long way from there to the crest the damper touches a wall, or it moves away from it.
     #[test]
@@ -279,6 +281,33 @@ mod tests {
                     }
                     Err(why) => assert!(!is_free && why == Failure::Graze(Event::Touch(side)), "{why}"),
                 }
+            }
+        }
+    }
+
+    /// By that plan and by a sharp one: the long way from the last step to the crest holds what many terms say of the end, of its derivatives, and of the energy until
+    /// then, which grows.
+    #[test]
+    fn invariant_a_long_way_to_the_end_holds_what_a_sharp_plan_says() {
+        let equations = scene();
+        let state = [0.4, -0.5, 0.05, 0.3, 0.0, 0.0].map(Taylor::point);
+        let (node, value) = (Node { event: Event::Crest, state }, Interval::point(0.1));
+        let sharp = plan(&equations, &node, Some(value)).expect("a plan");
+        let long = Plan { steps: vec![Taylor::point(1e-3)], ..sharp.clone() };
+        let [long, sharp] =
+            [long, sharp].map(|way| follow(&equations, &node, &[Interval::ZERO; 4], &way).expect("a way"));
+        let [wide, narrow] =
+            [&long, &sharp].map(|passage| largest(&equations, slice::from_ref(passage)).energy);
+        assert!(wide.hi() >= narrow.lo() && wide.lo() <= narrow.hi(), "{wide} {narrow}");
+        for i in 0..4 {
+            let [wide, narrow] = [&long, &sharp].map(|passage| passage.centre[i].hull());
+            assert!(
+                wide.meet(narrow).is_some() && wide.width() > 1e4 * narrow.width(),
+                "{i}: {narrow} {wide}"
+            );
+            for j in 0..4 {
+                let [wide, narrow] = [&long, &sharp].map(|passage| passage.by[i][j].hull());
+                assert!(wide.meet(narrow).is_some(), "{i} {j}: {narrow} {wide}");
             }
         }
     }
