@@ -4,6 +4,7 @@ python3 tests/orbits.py target/release/retune NUMBER results/proof/orbits.md
 """
 
 import csv
+import decimal
 import json
 import pathlib
 import subprocess
@@ -39,6 +40,12 @@ def ask(retune, *arguments):
     return (json.loads(done.stdout), "") if done.returncode == 0 else (None, done.stderr.strip().splitlines()[0])
 
 
+def most(x):
+    """Two digits of what it is at most, so rounded up."""
+    up = decimal.Context(prec=2, rounding=decimal.ROUND_UP)
+    return f"{float(up.create_decimal(x)):.1e}" if x else "0"
+
+
 def off(value, interval):
     return max(0.0, interval[0] - value, value - interval[1])
 
@@ -71,14 +78,14 @@ def main():
         unstable += not isinstance(stability, dict)
         offs.append(own)
         widths.append(known[1] - known[0])
-        numbers = " | ".join(f"{x:.1e}" if x else "0" for x in [widths[-1], *own])
+        numbers = " | ".join(most(x) for x in [widths[-1], *own])
         lines.append(f"{place} {known[1]:.9f} | {numbers} |")
         print(lines[-1], flush=True)
     middle = sorted(widths)[len(widths) // 2]
     says = [f"- Proven to exist: {len(offs)} of {number}; {unstable} of these are not proven to be stable. The median of the widths of the interval is {middle:.1e} J."]
     for k, what in enumerate(["The value of the branch", "The hybrid's", "DOP853's"]):
         inside = sum(own[k] == 0 for own in offs)
-        says.append(f"- {what} is in the interval of {inside}, elsewhere off by at most {max(own[k] for own in offs):.1e} J.")
+        says.append(f"- {what} is in the interval of {inside}, elsewhere off by at most {most(max(own[k] for own in offs))} J.")
     says += [f"- {count} not proven: {why}." for why, count in refused.items()]
     page = HEAD.format(number=number, summary="\n".join(says)) + "\n".join(lines) + "\n"
     pathlib.Path(target).write_text(page)

@@ -3,6 +3,7 @@
 python3 tests/proof.py [--write]
 """
 
+import decimal
 import json
 import math
 import pathlib
@@ -37,7 +38,7 @@ INTERVALS = """
 ## Motions
 
 What was proven from where to where, and what not: at each frequency of a row there is a stable motion that repeats after so many periods of the force and strikes
-these walls in turn (S the structure, O the obstacle). Ends are rounded; the JSON files have them in full.
+these walls in turn (S the structure, O the obstacle). Ends are rounded to the side on which less is proven; the JSON files have them in full.
 
 | file | omega, rad/s | periods | impacts | E1max is at most, J |
 | --- | --- | --- | --- | --- |
@@ -64,11 +65,22 @@ def upwards(energy):
     return f"{math.ceil(energy * 1e5) / 1e5:.5f}"
 
 
+def rounded(ends, *sides):
+    """Six decimals, each end rounded to its side."""
+    a, b = (decimal.Decimal(repr(end)).quantize(decimal.Decimal("1e-6"), side).normalize() for end, side in zip(ends, sides))
+    return f"{a} to {b}"
+
+
+def gap(ends):
+    """No less than is not proven."""
+    return rounded(ends, decimal.ROUND_FLOOR, decimal.ROUND_CEILING)
+
+
 def interval(name, kind, ends, most):
-    a, b = (f"{end:.7g}" for end in ends)
     if len(kind) == 1:
-        return f"| {name} | {a} to {b} | - | not proven: {kind[0]} | - |\n"
-    return f"| {name} | {a} to {b} | {kind[0]} | {kind[1]} | {upwards(most)} |\n"
+        return f"| {name} | {gap(ends)} | - | not proven: {kind[0]} | - |\n"
+    proven = rounded(ends, decimal.ROUND_CEILING, decimal.ROUND_FLOOR)
+    return f"| {name} | {proven} | {kind[0]} | {kind[1]} | {upwards(most)} |\n"
 
 
 def cover(name, proof):
@@ -87,8 +99,7 @@ def cover(name, proof):
 
 def row(name, proof):
     left = [part["omega"] for part in proof["left_out"]]
-    some = "; ".join(f"{a:.7g} to {b:.7g}" for a, b in left)
-    shown = some if len(left) < 9 else f"{len(left)} parts from {left[0][0]:.7g} to {left[-1][1]:.7g}"
+    shown = "; ".join(map(gap, left)) if len(left) < 9 else f"{len(left)} parts from {gap([left[0][0], left[-1][1]])}"
     a, b = proof["omega"]
     share = 1 - sum(b - a for a, b in left) / (b - a)
     # No more than is proven.
@@ -96,8 +107,8 @@ def row(name, proof):
     return f"| [{name}]({name}) | {a:g} to {b:g} | {len(proof['pieces'])} | {upwards(proof['E1max'][1])} | {proven} | {shown or 'none'} |\n"
 
 
-def rounded(parts):
-    return ", ".join(f"{a:.7g} to {b:.7g}" for a, b in parts)
+def gaps(parts):
+    return ", ".join(map(gap, parts))
 
 
 def width(parts):
@@ -122,8 +133,8 @@ def tuned(proofs):
     for start, end in sorted(piece["omega"] for proof in own for piece in proof["pieces"]):
         left += [(at, start)] if start > at else []
         at = max(at, end)
-    text = f"- The tuned damper: at each omega from {a:g} to {b:g} rad/s but for {len(left)} parts, {width(left)} rad/s in all ({rounded(left)}), a stable motion with an E1max of at most {upwards(most)} J"
-    return text + (f"; {HOLES.format(rounded(holes))}.\n" if holes else ".\n")
+    text = f"- The tuned damper: at each omega from {a:g} to {b:g} rad/s but for {len(left)} parts, {width(left)} rad/s in all ({gaps(left)}), a stable motion with an E1max of at most {upwards(most)} J"
+    return text + (f"; {HOLES.format(gaps(holes))}.\n" if holes else ".\n")
 
 
 def hedged(proofs):
@@ -131,7 +142,7 @@ def hedged(proofs):
     own = {e: proofs[f"ssvi-hedged{end}.json"] for e, end in HEDGED.items() if f"ssvi-hedged{end}.json" in proofs}
     left = {e: [part["omega"] for part in proof["left_out"]] for e, proof in own.items()}
     (a, b), most = own["0.6"]["omega"], max(proof["E1max"][1] for proof in own.values())
-    named = "; ".join(f"{rounded(parts)} at {e}" for e, parts in left.items() if parts)
+    named = "; ".join(f"{gaps(parts)} at {e}" for e, parts in left.items() if parts)
     all_of = "each restitution" if len(own) == len(HEDGED) else "some restitutions"
     text = f"- The hedged damper: at {all_of} of its objective, {', '.join(own)}, and each omega from {a:g} to {b:g} rad/s, "
     text += f"but for {width(sum(left.values(), []))} rad/s in all ({named}), " if named else ""

@@ -93,6 +93,8 @@ impl fmt::Display for Proof {
             "exists        a motion that repeats after {} of the force and strikes {strikes}",
             counted(*periods as u64, "period")
         )?;
+        // Two digits, of 5 % less and more: as many, rounded to nearest, of these themselves may say too much.
+        let (alone_within, width) = (0.95 * alone_within, 1.05 * width);
         writeln!(
             f,
             "alone         no other such motion is in a box {alone_within:.1e} wide about its states at the events; it is within {width:.1e} (m, m/s, rad)"

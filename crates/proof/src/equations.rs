@@ -9,7 +9,9 @@ use crate::elementary::pi;
 use crate::loss::Factor;
 use crate::number::{Number, SPEED, STATE};
 use crate::{Event, Failure, Interval, Taylor};
-use retune_model::{Contact, Scene, Side, Source, Surfaces};
+use retune_model::{
+    Contact, Damper, Forcing, PoissonRatio, Positive, Primary, Scene, Side, Source, Surfaces,
+};
 use std::array;
 
 /// The numbers of a scene.
@@ -37,8 +39,9 @@ pub struct Equations {
     pub factors: [Factor; 2],
     /// Powers of two that make the coordinates alike: roots of energies, which damping lets fall.
     pub scales: [f64; STATE],
-    /// The force, as weights of `[cos φ, ω² cos φ, ω sin φ]`.
+    /// The force, as weights of `[cos φ, ω² cos φ, ω sin φ]`, all over `ω²` if the acceleration of a base is given.
     force: [Interval; 3],
+    is_over_square: bool,
 }
 
 /// What the damper does.
@@ -62,43 +65,52 @@ pub struct Flow<'a> {
 impl Equations {
     /// The equations of a scene, each number of which is the decimal that a file has, not the double nearest to it.
     ///
+    /// All fields are named here, so that what the model learns is read or refused.
+    ///
     /// # Errors
-    /// No damper, no force, rigid walls, or contacts that lose energy.
+    /// No damper, no periodic force, rigid walls, or too small a restitution.
     pub fn new(scene: &Scene) -> Result<Self, Failure> {
         let number = Interval::decimal;
-        let damper = scene.damper.as_ref().ok_or(Failure::Scene("a scene without damper"))?;
-        let of = &scene.primary;
-        let [m1, c1, k1] = [of.mass.get(), of.damping.get(), of.stiffness.get()].map(number);
-        let [m2, c2, k2] = [damper.mass.get(), damper.damping.get(), damper.stiffness.get()].map(number);
-        let omega = number(scene.forcing.frequency.get());
+        let Scene { primary, forcing, damper } = scene;
+        let Primary { mass, damping, stiffness } = primary;
+        let [m1, c1, k1] = [mass.get(), damping.get(), stiffness.get()].map(number);
+        let Some(Damper { mass, stiffness, damping, rest_distance, clearance, contact }) = damper else {
+            return Err(Failure::Scene("a scene without damper"));
+        };
+        let [m2, c2, k2] = [mass.get(), damping.get(), stiffness.get()].map(number);
+        // Where a run starts is nothing to a motion that repeats.
+        let Forcing { source, frequency, start: _ } = forcing;
+        let omega = number(frequency.get());
         if !omega.is_positive() {
             return Err(Failure::Scene("a forcing whose omega is not above 0"));
         }
         // k1 y + c1 dy/dt with y = Y cos φ.
         let base = |y: Interval| [y * k1, Interval::ZERO, -(y * c1)];
-        let force = match scene.forcing.source {
+        let force = match source {
             Source::Force(p) => [number(p.get()), Interval::ZERO, Interval::ZERO],
             Source::Imbalance(me) => [Interval::ZERO, number(me.get()), Interval::ZERO],
             Source::Base(y) => base(number(y.get())),
-            Source::BaseAcceleration(a) => base(number(a.get()) / (omega * omega)),
+            // Y = a/ω².
+            Source::BaseAcceleration(a) => base(number(a.get())),
             Source::Decay(_) => return Err(Failure::Scene("a free decay, which does not repeat")),
             Source::History(_) => {
                 return Err(Failure::Scene("a pulse or a record, under which no motion repeats"));
             }
         };
-        let rest = number(damper.rest_distance.get());
-        let (walls, hertz, factors) = match &damper.contact {
+        let is_over_square = matches!(source, Source::BaseAcceleration(_));
+        let rest = number(rest_distance.get());
+        let (walls, hertz, factors) = match contact {
             None => ([Interval::ENTIRE; 2], [Interval::ZERO; 2], [Factor::None; 2]),
             Some(Contact::Rigid(_)) => return Err(Failure::Scene("rigid walls")),
             Some(Contact::Hertz(surfaces)) => {
                 let [a, b] = surfaces.losses();
-                let walls = [Interval::ZERO, rest + number(damper.clearance.get())];
+                let walls = [Interval::ZERO, rest + number(clearance.get())];
                 (walls, hertz_stiffness(surfaces), [Factor::new(&a)?, Factor::new(&b)?])
             }
         };
         let scales = scales(m1 / m2, omega.square() + k1 * (Interval::ONE / m1));
         let omega = Taylor::from(omega);
-        Ok(Self { omega, m1, c1, k1, m2, c2, k2, rest, walls, hertz, factors, scales, force })
+        Ok(Self { omega, m1, c1, k1, m2, c2, k2, rest, walls, hertz, factors, scales, force, is_over_square })
     }
 
     /// The same at the frequencies of a function, exactly.
@@ -133,7 +145,10 @@ impl<'a> Flow<'a> {
         };
         let [per_m1, per_m2] = [own.m1, own.m2].map(|mass| Interval::ONE / mass);
         let (omega, f) = (T::of(own.omega), own.force.map(|part| part * per_m1));
-        let force = [T::constant(f[0]) + (omega * omega).times(f[1]), omega.times(f[2])];
+        let mut force = [T::constant(f[0]) + (omega * omega).times(f[1]), omega.times(f[2])];
+        if own.is_over_square {
+            force = force.map(|part| part * (omega * omega).reciprocal());
+        }
         let (mut y, mut circle) = (vec![*start], vec![start[4].cos_sin()]);
         // Of a contact: the two accelerations, which are multiplied by dt/dθ = q, and that of the speed v.
         let mut accelerations: Vec<[T; 3]> = Vec::new();
@@ -270,17 +285,23 @@ pub fn product<T: Number>(k: usize, a: impl Fn(usize) -> T, b: impl Fn(usize) ->
 
 /// `[K1, K3]` of the contacts, `K = (4/3) q / ((δa + δb) √(1/R))` with `δ = (1 - ν²)/(πE)` (section 2 of the paper).
 fn hertz_stiffness(surfaces: &Surfaces) -> [Interval; 2] {
+    // What contacts lose is asked of `losses`; on strength and density no motion depends.
+    #[rustfmt::skip]
+    let Surfaces {
+        radius, coefficient, young_1, poisson_1, young_2, poisson_2, young_3, poisson_3, young_4, poisson_4,
+        loss: _, loss_obstacle: _, strength: _, density: _,
+    } = surfaces;
     let number = Interval::decimal;
-    let softness =
-        |young: f64, poisson: f64| (Interval::ONE - number(poisson).square()) / (pi() * number(young));
-    let s = surfaces;
+    let softness = |young: &Positive, poisson: &PoissonRatio| {
+        (Interval::ONE - number(poisson.get()).square()) / (pi() * number(young.get()))
+    };
     let pairs = [
-        softness(s.young_1.get(), s.poisson_1.get()) + softness(s.young_2.get(), s.poisson_2.get()),
-        softness(s.young_3.get(), s.poisson_3.get()) + softness(s.young_4.get(), s.poisson_4.get()),
+        softness(young_1, poisson_1) + softness(young_2, poisson_2),
+        softness(young_3, poisson_3) + softness(young_4, poisson_4),
     ];
-    let curvature = Interval::ONE / number(s.radius.get());
+    let curvature = Interval::ONE / number(radius.get());
     let [three, four] = [3.0, 4.0].map(Interval::point);
-    pairs.map(|softness| four * number(s.coefficient.get()) / (three * softness * curvature.sqrt()))
+    pairs.map(|softness| four * number(coefficient.get()) / (three * softness * curvature.sqrt()))
 }
 
 /// A series at an independent variable, the last coefficient first (Horner).

@@ -64,7 +64,8 @@ const AIMED: usize = 4;
 /// A state as the first states after an event, the fixed coordinate exact, with the free ones `away` from it.
 fn first(equations: &Equations, node: &Node, away: &[Interval]) -> States {
     let (mut centre, mut wide, mut by) = (node.state, [Interval::ZERO; STATE], identity());
-    node.event.free().into_iter().zip(away).for_each(|(i, away)| wide[i] = *away);
+    // With the centre itself, from which the mean value theorem counts: a box that Krawczyk's operator has made may be beside it.
+    node.event.free().into_iter().zip(away).for_each(|(i, away)| wide[i] = away.hull(Interval::ZERO));
     centre[node.event.fixed()] = match node.event {
         Event::Leave(side) => Taylor::from(equations.walls[side as usize]),
         _ => Taylor::ZERO,
@@ -254,4 +255,75 @@ pub fn rest_of_contact(equations: &Equations, side: Side, mut state: [f64; STATE
     let states = States::first(&state.map(Taylor::point), [Interval::ZERO; STATE], identity());
     let Plan { end, reached, .. } = plan_from(Flow { equations, mode: Mode::Contact(side) }, states, None)?;
     Ok(Node { event: end.event, state: reached })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::largest::largest;
+    use crate::step::tests::scene;
+    use std::slice;
+
+    /// A crest at the phase 0.1, 16 ms on, by a plan of one step of 1 ms: on the long way from there to the crest the damper touches a wall, or it moves away from it.
+    #[test]
+    fn contract_a_wall_that_is_touched_after_the_last_step_is_seen() {
+        let equations = scene();
+        for side in Side::BOTH {
+            let (wall, to_wall) = (equations.walls[side as usize].mid(), side.sign());
+            for (speed, is_free) in [(0.5, false), (-0.5, true)] {
+                let state = [wall - 1e-3 * to_wall, speed * to_wall, 0.05, 0.3, 0.0, 0.0].map(Taylor::point);
+                let end = Section { event: Event::Crest, value: Interval::point(0.1) };
+                let way = Plan { steps: vec![Taylor::point(1e-3)], end, reached: state };
+                match follow(&equations, &Node { event: Event::Crest, state }, &[Interval::ZERO; 4], &way) {
+                    // From 1 ms to 0.1/6.28 s.
+                    Ok(passage) => {
+                        assert!(is_free && (passage.delay.mid() - 14.924).abs() < 1e-3, "{side:?}")
+                    }
+                    Err(why) => assert!(!is_free && why == Failure::Graze(Event::Touch(side)), "{why}"),
+                }
+            }
+        }
+    }
+
+    /// By that plan and by a sharp one: the long way from the last step to the crest holds what many terms say of the end, of its derivatives, and of the energy until
+    /// then, which grows.
+    #[test]
+    fn invariant_a_long_way_to_the_end_holds_what_a_sharp_plan_says() {
+        let equations = scene();
+        let state = [0.4, -0.5, 0.05, 0.3, 0.0, 0.0].map(Taylor::point);
+        let (node, value) = (Node { event: Event::Crest, state }, Interval::point(0.1));
+        let sharp = plan(&equations, &node, Some(value)).expect("a plan");
+        let long = Plan { steps: vec![Taylor::point(1e-3)], ..sharp.clone() };
+        let [long, sharp] =
+            [long, sharp].map(|way| follow(&equations, &node, &[Interval::ZERO; 4], &way).expect("a way"));
+        let [wide, narrow] =
+            [&long, &sharp].map(|passage| largest(&equations, slice::from_ref(passage)).energy);
+        assert!(wide.hi() >= narrow.lo() && wide.lo() <= narrow.hi(), "{wide} {narrow}");
+        for i in 0..4 {
+            let [wide, narrow] = [&long, &sharp].map(|passage| passage.centre[i].hull());
+            assert!(
+                wide.meet(narrow).is_some() && wide.width() > 1e4 * narrow.width(),
+                "{i}: {narrow} {wide}"
+            );
+            for j in 0..4 {
+                let [wide, narrow] = [&long, &sharp].map(|passage| passage.by[i][j].hull());
+                assert!(wide.meet(narrow).is_some(), "{i} {j}: {narrow} {wide}");
+            }
+        }
+    }
+
+    /// The mean value theorem goes from the centre to each state of a box: the motions are those from both, though the box is beside the centre.
+    #[test]
+    fn contract_the_centre_is_among_the_states_of_a_box_beside_it() {
+        let equations = scene();
+        let state = [0.0, 0.5, 0.05, 0.3, 1.0, 0.0].map(Taylor::point);
+        for (event, sign) in [(Event::Touch(Side::Obstacle), 1.0), (Event::Touch(Side::Primary), -1.0)] {
+            let all = first(&equations, &Node { event, state }, &[Interval::new(1e-6, 2e-6); 4]).all();
+            for i in event.free() {
+                let own = state[i].mid() * if i == 1 { sign } else { 1.0 };
+                let beside = own + if i == 1 { 2e-6 * sign } else { 2e-6 };
+                assert!(all[i].hull().contains(own) && all[i].hull().contains(beside), "{event:?} {i}");
+            }
+        }
+    }
 }

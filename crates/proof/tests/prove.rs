@@ -1,6 +1,6 @@
 //! What is proven of motions of the paper's dampers, and what is not.
 
-use retune_model::{Coupled, Forcing, NonNegative, Parameter, Scene, Source};
+use retune_model::{Coupled, Forcing, NonNegative, Parameter, Scene, Source, Steady};
 use retune_proof::{Failure, Interval, Stability, band, prove};
 
 const STRUCTURE: &str =
@@ -57,20 +57,28 @@ fn is_about(interval: Interval, value: f64, [narrow, off]: [f64; 2]) -> bool {
 const CLOSED: [f64; 2] = [1e-10, 3e-15];
 const SOLVER: [f64; 2] = [1e-10, 1e-10];
 
+/// A force, an imbalance, and bases of given displacement and acceleration.
+fn sources() -> [Source; 4] {
+    let size = |size: f64| NonNegative::new(size).expect("an amplitude");
+    [
+        Source::Force(size(30.5)),
+        Source::Imbalance(size(30.5)),
+        Source::Base(size(0.02)),
+        Source::BaseAcceleration(size(0.7)),
+    ]
+}
+
+fn steady(scene: &Scene, omega: f64) -> Steady {
+    Coupled::new(&scene.primary, &scene.forcing, &scene.damper.expect("a damper")).steady(omega)
+}
+
 #[test]
 fn exact_the_closed_form_of_a_tmd_is_in_the_proven_intervals() {
     for omega in [2.5, 5.0, 5.9, 6.3, 7.3] {
-        for source in [Source::Force as fn(NonNegative) -> Source, Source::Imbalance, Source::Base] {
+        for source in sources() {
             let mut scene = tmd(omega);
-            let amplitude = NonNegative::new(if matches!(source(NonNegative::default()), Source::Base(_)) {
-                0.02
-            } else {
-                30.5
-            });
-            let source = source(amplitude.expect("an amplitude"));
             scene.forcing = Forcing { source, ..scene.forcing };
-            let steady =
-                Coupled::new(&scene.primary, &scene.forcing, &scene.damper.expect("a damper")).steady(omega);
+            let steady = steady(&scene, omega);
             let proven = prove(&scene, [0.0; 4], 1).expect("a proof");
             assert!(proven.impacts.is_empty() && proven.width < 1e-11, "{proven:?}");
             let Stability::Stable(_) = proven.stability else { panic!("{proven:?}") };
@@ -198,6 +206,30 @@ fn invariant_a_piece_of_a_band_holds_the_motions_at_its_frequencies() {
             assert_eq!((own.impacts.as_str(), piece.impacts.as_str()), ("S", "S"));
             for ((_, own), (_, all)) in own.largest.all().into_iter().zip(piece.largest.all()) {
                 assert!(own.is_in(all), "{omega}: {own} {all}");
+            }
+        }
+    }
+}
+
+/// What acts changes with the frequency along a piece: of an imbalance and of a base, in three ways.
+#[test]
+fn exact_the_closed_form_of_a_tmd_is_in_the_pieces_of_a_band() {
+    for source in sources() {
+        let mut scene = tmd(5.0);
+        scene.forcing = Forcing { source, ..scene.forcing };
+        let found = band(&scene, [7.0, 7.02], 1e4, &|_| Some(([0.0; 4], 1))).expect("a scene");
+        assert!(found.left_out.is_empty() && found.pieces.len() < 4, "{found:?}");
+        for piece in &found.pieces {
+            for omega in piece.omega {
+                let own = steady(&scene, omega);
+                assert!(
+                    is_about(piece.largest.energy, own.e1_max, [0.1, 3e-15]),
+                    "{omega} {own:?} {piece:?}"
+                );
+                assert!(
+                    is_about(piece.largest.stroke, own.stroke(), [0.1, 3e-15]),
+                    "{omega} {own:?} {piece:?}"
+                );
             }
         }
     }
