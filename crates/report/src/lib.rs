@@ -35,6 +35,7 @@
 mod axis;
 mod chart;
 pub mod colour;
+mod direct;
 pub mod document;
 mod draw;
 pub mod html;
@@ -47,6 +48,6 @@ mod text;
 mod ticks;
 
 pub use axis::{Axis, Scale, scale_for};
-pub use chart::{Chart, Dash, Key, Layer, Mark, Nodes, Place, Shape, Stand, Stroke, heat_map};
+pub use chart::{Chart, Dash, Key, Layer, Mark, Nodes, Place, Shape, Stand, Stroke, category_map, heat_map};
 pub use sheet::{Drawing, Sheet, Width, drawing, svg};
 pub use ticks::ten_to;

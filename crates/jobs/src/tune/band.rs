@@ -124,7 +124,7 @@ fn picture(study: &Study, rows: &[(f64, [f64; 3])], worst: [f64; 3]) -> String {
         caption.insert(
             0,
             format!(
-                "The legend has the largest of each curve. Over every k1, each over its own band: {worst}."
+                "Each curve is named with its largest value here. Over every k1, each over its own band: {worst}."
             ),
         );
     }
