@@ -311,7 +311,7 @@ mod tests {
                     let places: Vec<(f64, f64)> = points.iter().map(|&point| laid.at(point)).collect();
                     assert!(
                         !places.iter().any(|&place| inside(name.rect, place)),
-                        "{} on line {k}",
+                        "{:?} on line {k}",
                         name.text
                     );
                     let (x, y) = name.leader[0];
