@@ -139,6 +139,9 @@ mod tests {
         let text = "largest  TMD\n\nBuild the TMD: m2 = 800 kg.\n  Alone, it has 2 Hz.";
         assert_eq!(emphasised(text, false), text);
         let bold = emphasised(text, true);
-        assert_eq!(bold, text.replace("Build the TMD: m2 = 800 kg.", "\x1b[1mBuild the TMD: m2 = 800 kg.\x1b[0m"));
+        assert_eq!(
+            bold,
+            text.replace("Build the TMD: m2 = 800 kg.", "\x1b[1mBuild the TMD: m2 = 800 kg.\x1b[0m")
+        );
     }
 }
