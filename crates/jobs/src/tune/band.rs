@@ -173,13 +173,13 @@ mod tests {
         };
         let rows = [(5.0, [400.0, 300.0, f64::NAN]), (6.0, [1500.0, 850.0, f64::NAN])];
         let page = |relative| picture(&study(relative), &rows, [1570.0, 1051.0, f64::NAN]);
+        // The words of a figure, whatever lines they stand on.
         let plain = |text: &str| {
-            text.split("<tspan")
-                .map(|part| part.split_once('>').map_or(part, |(_, rest)| rest))
-                .collect::<String>()
+            let parts = text.split('<').map(|part| part.split_once('>').map_or(part, |(_, words)| words));
+            parts.flat_map(str::split_whitespace).collect::<Vec<_>>().join(" ")
         };
         let (own, one) = (plain(&page(true)), plain(&page(false)));
-        assert!(own.contains(": 850 J") && own.contains("Over every k") && own.contains("1051 J"), "{own}");
+        assert!(own.contains(": 850 J") && own.contains("Over every k 1") && own.contains("1051 J"), "{own}");
         assert!(one.contains(": 1051 J") && !one.contains("850 J") && !one.contains("Over every k"), "{one}");
     }
 }
