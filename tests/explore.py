@@ -362,6 +362,7 @@ def try_it(program, shots):
             if shots:
                 shown.shot(shots / f"explore-{width}-{scheme}.png")
             shown.close()
+    symbols(browser, explorer, checks, shots)
     own_structure(program, browser, checks, shots)
     moved_by(program, browser, checks, shots)
     tune(program, browser, checks)
@@ -372,6 +373,48 @@ def try_it(program, shots):
     checks.that("Ctrl-C ends it", explorer.process.returncode in (-signal.SIGINT, 130), explorer.process.returncode)
     print(f"{checks.count} checks, {checks.bad} faults")
     return 1 if checks.bad else 0
+
+
+def symbols(browser, explorer, checks, shots):
+    """Every symbol explains itself on hover, on focus and after a tap; a slider says that it stands at its end."""
+    page = Page(browser, explorer.address)
+    page.known()
+    note = "document.getElementById('help').hidden ? '' : document.getElementById('help').textContent"
+    symbol = ".control:has(#slider-k2) b"
+    x, y, *_ = page.middle(symbol)
+    page.mouse("mouseMoved", x, y, 0)
+    said = page.js(note)
+    checks.that("a symbol explains itself under the mouse", said.startswith("k2: stiffness of the damper's spring.") and "N/m" in said, said)
+    box = page.js("(() => { const b = document.getElementById('help').getBoundingClientRect(); return [b.left, b.right - innerWidth, b.top, b.bottom - innerHeight]; })()")
+    checks.that("within the window", box[0] >= 0 and box[1] <= 0 and box[2] >= 0 and box[3] <= 0, box)
+    page.mouse("mouseMoved", 5, 5, 0)
+    checks.that("and no longer when it has left", page.js(note) == "")
+    page.js("document.querySelector('#figures th[scope=row] [data-help]').focus()")
+    checks.that("one that has the focus, too", page.js(note).startswith("E1max: ") and len(page.js(note)) > 15, page.js(note))
+    page.key("Escape")
+    checks.that("until Escape", page.js(note) == "")
+    nameless = page.js("[...document.querySelectorAll('.control b, #figures tr + tr th[scope=row] span')].filter((e) => !e.dataset.help).map((e) => e.textContent)")
+    checks.that("no symbol is without help", not nameless, nameless)
+    page.type("#number-k2", page.js("(() => { const s = document.getElementById('slider-k2'); s.value = s.max; s.dispatchEvent(new Event('input')); return document.getElementById('number-k2').value; })()"))
+    page.known()
+    checks.that("a slider at its bound says so", "study allows" in page.text(".control:has(#slider-k2) .end"), page.text(".control:has(#slider-k2) .end"))
+    page.js("(() => { const s = document.getElementById('slider-m1'); s.value = s.min; s.dispatchEvent(new Event('input')); })()")
+    checks.that("and one at its end", "lower end" in page.text(".control:has(#slider-m1) .end"), page.text(".control:has(#slider-m1) .end"))
+    heights = page.js("(() => { const s = document.getElementById('slider-m1'), row = s.closest('.control'), end = row.offsetHeight; s.value = 500; s.dispatchEvent(new Event('input')); return [end, row.offsetHeight]; })()")
+    checks.that("which does not move when it leaves it", heights[0] == heights[1], heights)
+    page.close()
+
+    phone = Page(browser, explorer.address, 390)
+    phone.known()
+    phone.ask("Emulation.setTouchEmulationEnabled", enabled=True)
+    x, y, *_ = phone.middle(symbol)
+    for kind, points in [("touchStart", [{"x": x, "y": y}]), ("touchEnd", [])]:
+        phone.ask("Input.dispatchTouchEvent", type=kind, touchPoints=points)
+    phone.until(f"({note}).startsWith('k2')")
+    checks.that("a symbol explains itself after a tap", True)
+    if shots:
+        phone.shot(shots / "explore-help-390.png")
+    phone.close()
 
 
 def own_structure(program, browser, checks, shots):

@@ -26,9 +26,8 @@ WIDTHS = [390, 1200]
 # The greatest height of a page in a wide window, px, by the name of its directory.
 HEIGHTS = {"paper": 12_000}
 SCHEMES = ["light", "dark"]
-# The most series in one frame; and figures that are still to be taken apart into several frames, with theirs.
+# The most series in one frame.
 SERIES_MOST = 6
-CROWDED = {"stability/missed.svg": 7, "stability/rigid.svg": 10}
 # Faults of texts that are told of a page.
 MOST = 6
 # Seconds that the browser may take for an answer.
@@ -230,8 +229,7 @@ def look(browser, page, width, scheme, shots):
     faults = [words for event in browser.events if event.get("sessionId") == session and (words := said(event))]
     if seen["over"] > 0 or seen["beyond"]:
         faults.append(f"{seen['over']} px wider than its window: {'; '.join(seen['beyond'])}")
-    allowed = CROWDED.get("/".join(page.resolve().parts[-2:]), SERIES_MOST)
-    texts = js(TEXTS) + [f"{count} series in one frame" for count in js(SERIES) if count > allowed]
+    texts = js(TEXTS) + [f"{count} series in one frame" for count in js(SERIES) if count > SERIES_MOST]
     faults += [*texts[:MOST], *([f"and {len(texts) - MOST} more"] if len(texts) > MOST else [])]
     if width > 500 and seen["height"] > (most := HEIGHTS.get(page.resolve().parent.name, math.inf)):
         faults.append(f"{seen['height']} px high: at most {most}")

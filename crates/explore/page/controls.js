@@ -1,5 +1,6 @@
 // Sliders with editable numbers.
 
+import { help } from "./help.js";
 import { controls, place, value } from "./place.js";
 
 const STEPS = 1000;
@@ -29,6 +30,21 @@ export function read({ units }, text) {
 
 let rows = [];
 
+// What a parameter is, how far its slider goes and what else may be typed.
+function explained({ words, unit, units, range, value: own }, symbol) {
+    const [from, to, set] = [...range, own].map(shown);
+    const named = units.map(([name]) => name).filter(Boolean);
+    const typed = named.length > 1 ? `, also in ${named.filter((name) => name !== unit).join(", ")}` : "";
+    return `${symbol}: ${words}. The study has ${set} ${unit}. The slider goes from ${from} to ${to} ${unit}; the field takes what is allowed beyond it${typed}.`;
+}
+
+// Where the slider ends, if it stands there.
+function ended({ range: [from, to] }, now) {
+    const near = (end) => Math.abs(now - end) <= 1e-9 * Math.max(Math.abs(end), Math.abs(to - from));
+    if (near(from) || now < from) return now < from ? "below the slider" : "the slider's lower end";
+    return near(to) ? "the slider's upper end" : now > to ? "above the slider" : "";
+}
+
 // Makes the controls of the present damper. `changed` is called with the name of what was turned, `refused` with what is wrong with what was
 // typed, and its name.
 export function build(into, changed, refused) {
@@ -40,11 +56,12 @@ export function build(into, changed, refused) {
     rows = controls().map((control) => {
         const row = document.createElement("div");
         row.className = "control";
-        row.innerHTML = `<label><b></b> <span></span></label>
+        row.innerHTML = `<label><b></b> <span></span></label><span class="end"></span>
             <input type="range" min="0" max="${STEPS}" step="1"><input type="text" inputmode="decimal" autocomplete="off" spellcheck="false"><span class="unit"></span>`;
         const [slider, text] = row.querySelectorAll("input");
         const symbol = control.name === "omega" ? "ω" : control.name;
         row.querySelector("b").textContent = symbol;
+        help(row.querySelector("b"), explained(control, symbol));
         row.querySelector("label span").textContent = control.words;
         row.querySelector(".unit").textContent = control.unit;
         slider.id = `slider-${control.name}`;
@@ -83,8 +100,10 @@ export function refresh() {
         if (Number(slider.value) !== at) slider.value = at;
         const hertz = control.name === "omega" ? `: ${Number((now / (2 * Math.PI)).toPrecision(4))} Hz` : "";
         const bound = ["smallest", "largest"].find((_, end) => control.bounds[end] !== null && Math.abs(now - control.bounds[end]) <= 1e-9 * Math.abs(now));
-        row.querySelector("label span").textContent = `${control.words}${hertz}${bound ? `: the ${bound} that the study allows` : ""}`;
-        slider.setAttribute("aria-valuetext", `${shown(now)} ${control.unit}`);
+        const end = bound ? `the ${bound} that the study allows` : ended(control, now);
+        row.querySelector("label span").textContent = `${control.words}${hertz}`;
+        row.querySelector(".end").textContent = end;
+        slider.setAttribute("aria-valuetext", `${shown(now)} ${control.unit}${end ? `, ${end}` : ""}`);
         if (document.activeElement !== text || Number(text.value) !== now) text.value = shown(now);
         row.classList.toggle("changed", control.name in place.set);
         row.title = control.name in place.set ? `the study has ${shown(control.value)} ${control.unit}` : "";

@@ -1,5 +1,11 @@
 // The figures, with their units: what the page says in numbers. They come as text from the server, to the digits that are printed.
 
+import { help } from "./help.js";
+
+// What the last two rows mean.
+const REDUCTION = "How many times less the worst of the band is than without a damper.";
+const MOTION = "The kind of motion. “2T, 1, 3” repeats every two periods of the force, with one impact on the structure and three on the obstacle.";
+
 export class Figures {
     constructor({ heroes, table, irregular, said, text }) {
         Object.assign(this, { heroes, table, irregular, said, text });
@@ -92,8 +98,9 @@ export class Figures {
             ["reduction", "", times(worst), ...pinned.map((whose) => times(this.worst[whose]))],
             ["motion", kind?.label ?? "–", "", ...pinned.map((whose) => this.kinds[whose]?.label ?? "–")],
         ];
+        const meanings = [...this.rows.map(([name, , words]) => `${name.replace("_", " ")}: ${words}.`), REDUCTION, MOTION];
         // The cells stay while their numbers change: a table that is made anew at every step of a drag is laid out anew.
-        update(this.table, `pinned ${pinned} ${transient}`, () => rows.map((row, i) => tableRow(row, i, columns, this.rows[i - 1]?.[2])));
+        update(this.table, `pinned ${pinned} ${transient}`, () => rows.map((row, i) => tableRow(row, i, columns, meanings[i - 1])));
         rows.forEach((row, i) => row.forEach((words, j) => write(this.table.children[i].children[j], words)));
     }
 
@@ -123,14 +130,16 @@ function tableRow(row, i, columns, meaning) {
         ...row.map((_, j) => {
             const cell = element(j && i ? "td" : "th", j ? columns[j - 1][2] : "");
             if (cell.tagName === "TH") cell.scope = j ? "col" : "row";
-            if (!j && meaning) cell.title = meaning;
+            if (!j) cell.append(element("span"));
+            if (!j && meaning) help(cell.firstChild, meaning);
             return cell;
         }),
     );
     return made;
 }
 
-function write(cell, words) {
+function write(place, words) {
+    const cell = place.firstElementChild ?? place;
     if (cell.textContent !== words) cell.textContent = words;
 }
 

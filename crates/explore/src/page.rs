@@ -25,6 +25,7 @@ pub const FILES: &[File] = &[
     file!("link.js", "text/javascript; charset=utf-8"),
     file!("place.js", "text/javascript; charset=utf-8"),
     file!("controls.js", "text/javascript; charset=utf-8"),
+    file!("help.js", "text/javascript; charset=utf-8"),
     file!("charts.js", "text/javascript; charset=utf-8"),
     file!("response.js", "text/javascript; charset=utf-8"),
     file!("branches.js", "text/javascript; charset=utf-8"),

@@ -127,7 +127,7 @@ impl std::fmt::Display for Simulation {
         self.transient.iter().try_for_each(|words| write!(f, "\nnote        {words}"))?;
         let Some(means) = &self.stationary else { return Ok(()) };
         for (measure, value) in means.each() {
-            let (name, unit) = (measure.name(), measure.unit());
+            let (name, unit) = (measure.short_name(), measure.unit());
             if value.is_finite() {
                 write!(f, "\n{name:<11} {value:<12.7} {unit}")?;
             } else {

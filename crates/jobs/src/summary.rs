@@ -236,9 +236,13 @@ impl std::fmt::Display for Summary {
         } else {
             writeln!(f, "frequency   {} rad/s = {hertz} Hz = {rpm} rpm", rounded(omega, 5))?;
         }
-        writeln!(f, "E1max       {:<12.7} J at t = {:.4} s", self.e1_max, self.t_e1_max)?;
-        writeln!(f, "E2max       {:<12.7} J at t = {:.4} s", self.e2_max, self.t_e2_max)?;
-        writeln!(f, "R1, R2      {:.5}, {:.5}", self.r1, self.r2)?;
+        writeln!(f, "E1max       {:<12} J at t = {:.4} s", digits(self.e1_max), self.t_e1_max)?;
+        writeln!(f, "E2max       {:<12} J at t = {:.4} s", digits(self.e2_max), self.t_e2_max)?;
+        if self.r1.is_nan() {
+            writeln!(f, "R1, R2      none: nothing has energy in the window")?;
+        } else {
+            writeln!(f, "R1, R2      {:.5}, {:.5}", self.r1, self.r2)?;
+        }
         let Walls { primary, obstacle } = self.impacts;
         writeln!(f, "impacts     {primary} on the primary structure, {obstacle} on the obstacle")?;
         let Walls { primary, obstacle } = self.force_max;
@@ -251,13 +255,15 @@ impl std::fmt::Display for Summary {
             )?;
         }
         let (stroke, relative) = (self.spring_deflection_max, self.relative_displacement_max);
-        writeln!(f, "stroke      {stroke:.6} m, the largest spring deflection |x2 - x1 - D|")?;
-        writeln!(f, "rel. displ. {relative:.6} m, the largest relative displacement |x2 - x1|")?;
+        let [stroke, relative] = [stroke, relative]
+            .map(|value| if is_small(value) { digits(value) } else { format!("{value:.6}") });
+        writeln!(f, "stroke      {stroke} m, the largest spring deflection |x2 - x1 - D|")?;
+        writeln!(f, "rel. displ. {relative} m, the largest relative displacement |x2 - x1|")?;
         let Structure { x1max, t_x1, v1max, t_v1, a1max, t_a1, ground_force_max, t_ground_force } =
             self.structure;
-        writeln!(f, "x1max       {x1max:<12.7} m at t = {t_x1:.4} s")?;
-        writeln!(f, "v1max       {v1max:<12.7} m/s at t = {t_v1:.4} s")?;
-        writeln!(f, "a1max       {a1max:<12.7} m/s² at t = {t_a1:.4} s")?;
+        writeln!(f, "x1max       {:<12} m at t = {t_x1:.4} s", digits(x1max))?;
+        writeln!(f, "v1max       {:<12} m/s at t = {t_v1:.4} s", digits(v1max))?;
+        writeln!(f, "a1max       {:<12} m/s² at t = {t_a1:.4} s", digits(a1max))?;
         writeln!(
             f,
             "ground      {ground_force_max:<12.3} N at t = {t_ground_force:.4} s, the largest force on the ground"
@@ -280,6 +286,16 @@ impl std::fmt::Display for Summary {
         let (steps, evaluations) = (counted(self.steps, "step"), counted(self.evaluations, "evaluation"));
         write!(f, "work        {steps}, {} rejected, {evaluations}", self.rejected)
     }
+}
+
+/// Whether a value that is not zero would lose digits with a fixed number of decimals, as those of a light rig.
+fn is_small(value: f64) -> bool {
+    value != 0.0 && value.abs() < 1e-3
+}
+
+/// A value to seven decimals, or, where it is small, to as many digits.
+fn digits(value: f64) -> String {
+    if is_small(value) { format!("{value:.7e}") } else { format!("{value:.7}") }
 }
 
 /// The damper of a study's scene: the paper's where it has the numbers of an optimum that the paper publishes.

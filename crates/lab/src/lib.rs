@@ -11,6 +11,7 @@ pub mod motion;
 pub mod panel;
 #[cfg(feature = "integrators")]
 pub mod peers;
+pub mod records;
 pub mod reference;
 pub mod runs;
 pub mod savings;

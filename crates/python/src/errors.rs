@@ -64,6 +64,7 @@ impl Fault {
             StudyError::Unreadable { .. }
             | StudyError::NotText { .. }
             | StudyError::Kind { .. }
+            | StudyError::Structure { .. }
             | StudyError::Several { .. }
             | StudyError::NoResults { .. } => {
                 return Self::Study { message: error.to_string(), field: None, given: Given::Nothing };

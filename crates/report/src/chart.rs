@@ -1,7 +1,7 @@
 //! A chart as data: two axes, and layers from back to front.
 
 use crate::axis::{Axis, Scale, scale_for};
-use crate::colour::{BLACK, Colour};
+use crate::colour::{BLACK, CATEGORIES, Colour, NOTHING, OTHERS};
 
 /// How a line is interrupted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,6 +105,11 @@ pub enum Layer {
         edges: [Vec<f64>; 2],
         values: Vec<f64>,
         colours: Axis,
+    },
+    /// A cell of its own colour for each of `colours`, between edges as in a [`Layer::Map`].
+    Cells {
+        edges: [Vec<f64>; 2],
+        colours: Vec<Colour>,
     },
     /// A vertical line over the whole height.
     Upright {
@@ -215,14 +220,44 @@ pub fn heat_map(
     quantity: &str,
     places: &[Place],
 ) -> (Chart, Vec<(Key, String)>) {
-    let edges = [edges(&sides[0]), edges(&sides[1])];
-    let axis = |side: usize| {
-        let ends = (edges[side][0], edges[side][edges[side].len() - 1]);
-        Axis::new(sides[side].label.as_str(), sides[side].scale, ends)
-    };
-    let (x, y) = (axis(0), axis(1));
     let colours = Axis::exact(quantity, scale_for(values), values.iter().copied());
-    let mut layers = vec![Layer::Map { edges: edges.clone(), values: values.to_vec(), colours }];
+    let edges = sides.each_ref().map(edges);
+    map(sides, Layer::Map { edges, values: values.to_vec(), colours }, places)
+}
+
+/// As [`heat_map`], of things without an order: for each cell the number of its name, or none. The legend has `names`, those beyond the colours
+/// as one, and `none` if a cell has none.
+pub fn category_map(
+    sides: &[Nodes; 2],
+    of: &[Option<usize>],
+    names: &[String],
+    none: &str,
+    places: &[Place],
+) -> (Chart, Vec<(Key, String)>) {
+    let colour = |of: &Option<usize>| of.map_or(NOTHING, |i| CATEGORIES.get(i).copied().unwrap_or(OTHERS));
+    let edges = sides.each_ref().map(edges);
+    let cells = Layer::Cells { edges, colours: of.iter().map(colour).collect() };
+    let mut legend: Vec<(Key, String)> =
+        CATEGORIES.iter().zip(names).map(|(colour, name)| (Key::Area(colour, 1.0), name.clone())).collect();
+    if let Some(more @ 1..) = names.len().checked_sub(CATEGORIES.len()) {
+        let words = if more == 1 { "one more".to_owned() } else { format!("{more} more, not told apart") };
+        legend.push((Key::Area(OTHERS, 1.0), words));
+    }
+    if of.contains(&None) {
+        legend.push((Key::Area(NOTHING, 1.0), none.to_owned()));
+    }
+    let (chart, marked) = map(sides, cells, places);
+    (chart, [legend, marked].concat())
+}
+
+/// A chart of cells over two sides, and the legend of the places that are marked in it.
+fn map(sides: &[Nodes; 2], cells: Layer, places: &[Place]) -> (Chart, Vec<(Key, String)>) {
+    let axis = |side: &Nodes| {
+        let edges = edges(side);
+        Axis::new(side.label.as_str(), side.scale, (edges[0], edges[edges.len() - 1]))
+    };
+    let [x, y] = sides.each_ref().map(axis);
+    let mut layers = vec![cells];
     let mut legend = Vec::new();
     for (place, mark) in places.iter().zip(MARKS.into_iter().cycle()) {
         let inside = x.holds(place.at.0) && y.holds(place.at.1);
@@ -251,6 +286,25 @@ fn edges(side: &Nodes) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn contract_a_map_of_categories_names_each_colour_that_it_has() {
+        let side = |n: usize| Nodes {
+            label: String::new(),
+            scale: Scale::Linear,
+            values: (0..n).map(|i| i as f64).collect(),
+        };
+        let names: Vec<String> = (0..8).map(|i| format!("motion {i}")).collect();
+        let ends = [Some(0), Some(1), Some(7), Some(6), None, Some(5)];
+        let (chart, legend) = category_map(&[side(3), side(2)], &ends, &names, "none of these", &[]);
+        let Layer::Cells { colours, .. } = &chart.layers[0] else { panic!("{:?}", chart.layers) };
+        assert_eq!(colours, &[CATEGORIES[0], CATEGORIES[1], OTHERS, OTHERS, NOTHING, CATEGORIES[5]]);
+        let words: Vec<&str> = legend.iter().map(|(_, words)| words.as_str()).collect();
+        assert_eq!(words[..2], ["motion 0", "motion 1"]);
+        assert_eq!(words[6..], ["2 more, not told apart", "none of these"]);
+        let (_, plain) = category_map(&[side(3), side(2)], &ends[..2], &names[..2], "none of these", &[]);
+        assert_eq!(plain.len(), 2);
+    }
 
     #[test]
     fn exact_edges_lie_halfway_on_the_scale() {

@@ -31,6 +31,13 @@ pub(crate) const NOTHING: &str = "#C8C8C8";
 pub const DARK: [(Colour, &str); 5] =
     [(BLACK, "#E8EAEE"), (PAPER, "#14161A"), (BLUE, "#4AA8E0"), (VERMILION, "#FF8A3D"), (GREEN, "#2FC79B")];
 
+/// Colours of the cells of a map whose values have no order, at most as many as a reader tells apart; those beyond share [`OTHERS`]. Blue, orange,
+/// bluish green, reddish purple and yellow of the palette, and a dark brown: also those who see no red or no green tell them apart (a test). In small
+/// letters, so that [`style`] leaves them alone: a map keeps its colours on a dark page.
+pub const CATEGORIES: [Colour; 6] = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#f0e442", "#5a2d0c"];
+/// The cells of all other values of such a map.
+pub const OTHERS: Colour = "#f2f2f2";
+
 /// The style sheet of a figure: other colours where the reader's pages are dark. It holds within elements of the class `figure` only, so
 /// that it may stand in an HTML page. Maps keep their colours.
 pub(crate) fn style() -> String {
@@ -87,6 +94,52 @@ mod tests {
         };
         let light = |c: &str| 0.2126 * channel(c, 1) + 0.7152 * channel(c, 3) + 0.0722 * channel(c, 5) + 0.05;
         (light(a) / light(b)).max(light(b) / light(a))
+    }
+
+    /// How far apart two colours are in CIELAB (1976) for readers of whose cones some are missing: matrices of G. M. Machado et al. (2009) at
+    /// severity 1, in linear sRGB.
+    fn apart(a: &str, b: &str, seen: [[f64; 3]; 3]) -> f64 {
+        let lab = |colour: &str| {
+            let linear = [1, 3, 5].map(|i| {
+                let value = f64::from(u8::from_str_radix(&colour[i..i + 2], 16).expect("a colour")) / 255.0;
+                if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+            });
+            let times = |row: [f64; 3], of: [f64; 3]| (0..3).map(|i| row[i] * of[i]).sum::<f64>();
+            let rgb = seen.map(|row| times(row, linear).clamp(0.0, 1.0));
+            let xyz = [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]
+                .map(|row| times(row, rgb));
+            let f = |t: f64| if t > 0.008856 { t.cbrt() } else { 7.787 * t + 16.0 / 116.0 };
+            let [x, y, z] = [xyz[0] / 0.9505, xyz[1], xyz[2] / 1.089].map(f);
+            [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+        };
+        let (a, b) = (lab(a), lab(b));
+        (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
+    }
+
+    #[test]
+    fn contract_categories_stay_apart_for_readers_who_see_no_red_or_no_green() {
+        let all = [&CATEGORIES[..], &[OTHERS, NOTHING]].concat();
+        let usual = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let no_red = [
+            [0.152286, 1.052583, -0.204868],
+            [0.114503, 0.786281, 0.099216],
+            [-0.003882, -0.048116, 1.051998],
+        ];
+        let no_green = [
+            [0.367322, 0.860646, -0.227968],
+            [0.280085, 0.672501, 0.047413],
+            [-0.011820, 0.042940, 0.968881],
+        ];
+        for seen in [usual, no_red, no_green] {
+            for (i, a) in all.iter().enumerate() {
+                for b in &all[..i] {
+                    assert!(apart(a, b, seen) > 14.0, "{a} and {b}: {}", apart(a, b, seen));
+                }
+            }
+        }
+        for colour in CATEGORIES {
+            assert!(DARK.iter().all(|(light, _)| *light != colour), "{colour} would turn dark");
+        }
     }
 
     #[test]

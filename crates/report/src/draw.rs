@@ -1,8 +1,9 @@
 //! A chart that is laid out, as SVG.
 
-use crate::chart::{Dash, Layer, Mark, Stand, Stroke};
+use crate::chart::{Dash, Layer, Mark, Shape, Stand, Stroke};
 use crate::colour::{BLACK, Colour, GREY, PAPER, viridis};
-use crate::layout::{LEADER, Layout, SMALL, TICK, TINY};
+use crate::direct::Direct;
+use crate::layout::{LEADER, LINE, Layout, SMALL, TICK, TINY};
 use crate::path::{Rect, polyline, rectangle, shape};
 use crate::svg::{Anchor, Font, Svg, units};
 use std::collections::{BTreeMap, BTreeSet};
@@ -105,6 +106,11 @@ fn draw_layer(svg: &mut Svg, layer: &Layer, layout: &Layout) {
         Layer::Map { edges, values, colours } => {
             let cells = values.iter().map(|&value| viridis(colours.share(value)));
             for (colour, path) in map(edges, cells, layout) {
+                svg.fill(&path, &colour, CRISP);
+            }
+        }
+        Layer::Cells { edges, colours } => {
+            for (colour, path) in map(edges, colours.iter().map(|&colour| colour.to_owned()), layout) {
                 svg.fill(&path, &colour, CRISP);
             }
         }
@@ -236,6 +242,19 @@ fn names(svg: &mut Svg, layout: &Layout) {
             marks(svg, &[(from + 3.0, place)], *mark);
         }
         svg.text(text, (right + LEADER, place), Font::new(TINY, Anchor::Start));
+    }
+}
+
+/// Names beside their lines, each with a thin line to its own.
+pub(crate) fn directs(svg: &mut Svg, names: &[Direct]) {
+    for Direct { text, rect, leader, stroke } in names {
+        svg.line(&polyline(leader.iter().copied(), everywhere()), stroke.colour, 0.5, "");
+        marks(svg, &leader[..1], Mark::new(Shape::Disc, stroke.colour, 2.6));
+        let font = Font { halo: true, ..Font::new(SMALL, Anchor::Middle) };
+        for (i, line) in text.iter().enumerate() {
+            let down = (i as f64 + 0.5) * SMALL + i as f64 * (LINE - 1.0) * SMALL;
+            svg.text(line, (0.5 * (rect[0] + rect[2]), rect[1] + down), font);
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! A [`Sheet`] is a figure as data: [`Chart`]s in rows and columns below one legend. A chart has two [`Axis`] and [`Layer`]s from
 //! back to front: lines, dots, bands, maps, marks, rules, labels. [`svg()`] lays it out and writes it. There is one algorithm for
-//! ticks, one for margins, one palette ([`colour`]), and one style of subscripts: `E1max`, `k2` and `c2` in any text are set with
+//! ticks, one for margins, one for names beside lines (in the place of a legend, where all of a chart find room), one palette ([`colour`]), and one style of subscripts: `E1max`, `k2` and `c2` in any text are set with
 //! their index lowered, `10⁻³` with a raised power.
 //!
 //! All lengths are points. A figure is one column of a journal wide (85 mm) or its page (180 mm), and text has 8 pt there (names beside
@@ -35,6 +35,7 @@
 mod axis;
 mod chart;
 pub mod colour;
+mod direct;
 pub mod document;
 mod draw;
 pub mod html;
@@ -47,6 +48,6 @@ mod text;
 mod ticks;
 
 pub use axis::{Axis, Scale, scale_for};
-pub use chart::{Chart, Dash, Key, Layer, Mark, Nodes, Place, Shape, Stand, Stroke, heat_map};
+pub use chart::{Chart, Dash, Key, Layer, Mark, Nodes, Place, Shape, Stand, Stroke, category_map, heat_map};
 pub use sheet::{Drawing, Sheet, Width, drawing, svg};
 pub use ticks::ten_to;

@@ -19,7 +19,14 @@ fn inside([left, top, right, bottom]: Rect, (x, y): (f64, f64)) -> bool {
 }
 
 /// The part of a segment within a rectangle (Y.-D. Liang and B. A. Barsky, 1984).
-fn clip([left, top, right, bottom]: Rect, a: (f64, f64), b: (f64, f64)) -> Option<[(f64, f64); 2]> {
+pub(crate) fn clip(
+    [left, top, right, bottom]: Rect,
+    a: (f64, f64),
+    b: (f64, f64),
+) -> Option<[(f64, f64); 2]> {
+    if ![a.0, a.1, b.0, b.1].into_iter().all(f64::is_finite) {
+        return None;
+    }
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);
     let (mut from, mut to) = (0.0_f64, 1.0_f64);
     for (p, q) in [(-dx, a.0 - left), (dx, right - a.0), (-dy, a.1 - top), (dy, bottom - a.1)] {

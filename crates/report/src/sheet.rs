@@ -1,7 +1,8 @@
 //! A sheet: charts in rows and columns below one legend, and a caption.
 
 use crate::chart::{Chart, Key, Mark, Stroke};
-use crate::draw::{area, chart, marks, sample};
+use crate::direct::{Direct, direct, line};
+use crate::draw::{area, chart, directs, marks, sample};
 use crate::layout::{LINE, Margins, SMALL, TEXT, layout};
 use crate::path::Rect;
 use crate::svg::{Anchor, Font, Svg};
@@ -42,7 +43,7 @@ pub struct Sheet {
     pub columns: usize,
     /// Whether the charts of a column have the abscissa in common: only the lowest has its numbers and its label.
     pub stacked: bool,
-    /// The legend above the charts.
+    /// The legend above the charts. Of a figure with one chart the names of up to six lines stand beside them instead, if they find places.
     pub legend: Vec<(Key, String)>,
     /// Lines of text below them; long ones are broken.
     pub caption: Vec<String>,
@@ -112,7 +113,10 @@ pub fn drawing(sheet: &Sheet) -> Drawing {
 fn on_width(sheet: &Sheet, page: f64, columns: usize) -> String {
     let mut out = Svg::default();
     let (columns, count) = (columns.max(1), sheet.charts.len());
-    let mut y = EDGE + legend(&mut out, &sheet.legend, page);
+    let named = beside(sheet, page);
+    let is_shown = |key: &&(Key, String)| named.is_none() || line(key).is_none();
+    let shown: Vec<(Key, String)> = sheet.legend.iter().filter(is_shown).cloned().collect();
+    let mut y = EDGE + legend(&mut out, &shown, page);
     let width = (page - 2.0 * EDGE - GUTTER * (columns - 1) as f64) / columns as f64;
     let lowest = |i: usize| i + columns >= count;
     let mut cells: Vec<(Rect, bool)> = Vec::new();
@@ -138,12 +142,22 @@ fn on_width(sheet: &Sheet, page: f64, columns: usize) -> String {
             chart(&mut out, &layout(&sheet.charts[i], cells[i].0, cells[i].1, least));
         }
     }
+    directs(&mut out, &named.unwrap_or_default());
     y += 2.0;
     for line in sheet.caption.iter().flat_map(|text| lines(text, SMALL, page - 2.0 * EDGE)) {
         out.text(&line, (EDGE, y + 0.5 * LINE * SMALL), Font::new(SMALL, Anchor::Start));
         y += LINE * SMALL;
     }
     out.document((page, y + EDGE), &sheet.title, &sheet.description)
+}
+
+/// The names beside the lines of a figure with one chart, if all find a place: they then stand in no legend. Charts side by side share one legend.
+fn beside(sheet: &Sheet, page: f64) -> Option<Vec<Direct>> {
+    let [chart] = sheet.charts.as_slice() else { return None };
+    let others: Vec<(Key, String)> = sheet.legend.iter().filter(|key| line(key).is_none()).cloned().collect();
+    let top = EDGE + legend(&mut Svg::default(), &others, page);
+    let cell = [EDGE, top, page - EDGE, top + chart.height];
+    direct(&layout(chart, cell, true, Margins::default()), &sheet.legend)
 }
 
 /// Draws the legend from the upper edge downwards; its height, pt.

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-/// Letters that carry an index: `E1max`, `k2`, `c2`, `x1`, `R1`, `t0`.
-const SYMBOLS: &str = "EkcxvmRtF";
+/// Letters that carry an index: `E1max`, `k2`, `c2`, `x1`, `a1`, `R1`, `t0`.
+const SYMBOLS: &str = "EkcxvamRtF";
 /// Size of an index, as a share of its text's.
 const INDEX: f64 = 0.72;
 /// Depth of a subscript and height of a superscript, as shares of the size of the text.
@@ -147,6 +147,7 @@ mod tests {
     #[test]
     fn contract_symbols_carry_their_index_and_other_words_keep_theirs() {
         assert_eq!(flat("worst E1max, J over k1"), "worst E_{1max}, J over k_{1}");
+        assert_eq!(flat("a1max, m/s²"), "a_{1max}, m/s^{2}");
         assert_eq!(flat("k₂, c₂; x1 and R2, t0 = 50 s"), "k_{2}, c_{2}; x_{1} and R_{2}, t_{0} = 50 s");
         assert_eq!(flat("10⁻¹⁵ m², c2² = 4 k2 m2"), "10^{−15} m^{2}, c_{2}^{2} = 4 k_{2} m_{2}");
         for plain in ["ode45, rk4, dop853", "3.95e4 N/m", "2T, 1, 0", "rtol 1e-10", "k2x", "Ek1", "max"] {

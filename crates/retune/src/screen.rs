@@ -6,7 +6,7 @@ use retune_jobs::{Error, Observer, Progress};
 use retune_study::visible;
 use serde_json::Value;
 use std::fmt::Display;
-use std::io::{ErrorKind, Write};
+use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
 
 /// The observer of all jobs: shows them on the terminal.
@@ -36,7 +36,8 @@ impl Screen {
     /// completed and its files are written all the same.
     pub fn line(&self, text: impl Display) -> Result<(), Error> {
         let mut out = std::io::stdout().lock();
-        match writeln!(out, "{}", visible(&text.to_string())).and_then(|()| out.flush()) {
+        let text = emphasised(&visible(&text.to_string()), has_colour(&out));
+        match writeln!(out, "{text}").and_then(|()| out.flush()) {
             Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
             Err(source) => Err(retune_store::Error::Output { path: "standard output".into(), source }.into()),
             Ok(()) => Ok(()),
@@ -94,7 +95,28 @@ pub fn complain(words: &str) {
 
 /// Writes to standard error, and ignores errors of doing so.
 fn say(what: &str, words: &str) {
-    let _ = writeln!(std::io::stderr(), "{what}: {}", visible(words));
+    let mut out = std::io::stderr().lock();
+    let colour = if what == "error" { "31" } else { "33" };
+    let what = if has_colour(&out) { format!("\x1b[1;{colour}m{what}\x1b[0m") } else { what.to_owned() };
+    let _ = writeln!(out, "{what}: {}", visible(words));
+}
+
+/// Whether a stream shows colours: a terminal, unless its user wants none (<https://no-color.org>).
+fn has_colour(stream: &impl IsTerminal) -> bool {
+    let wants_none = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+    stream.is_terminal() && !wants_none && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
+}
+
+/// How the lines begin that answer the question.
+const ANSWERS: [&str; 4] = ["Build ", "None was found", "  verdict ", "  build "];
+
+/// A text whose lines that answer the question are bold, where the terminal can.
+fn emphasised(text: &str, colour: bool) -> String {
+    let line = |line: &str| match colour && ANSWERS.iter().any(|answer| line.starts_with(answer)) {
+        true => format!("\x1b[1m{line}\x1b[0m"),
+        false => line.to_owned(),
+    };
+    text.split('\n').map(line).collect::<Vec<_>>().join("\n")
 }
 
 /// Shows an error in the arguments, or the help that was requested. Returns the exit code.
@@ -106,4 +128,20 @@ pub fn show_usage(error: &clap::Error) -> u8 {
         let _ = error.print(); // in colour; it repeats nothing that the user typed
     }
     u8::try_from(error.exit_code()).unwrap_or(crate::exit::WRONG)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::emphasised;
+
+    #[test]
+    fn contract_the_answer_is_bold_on_a_terminal_and_plain_elsewhere() {
+        let text = "largest  TMD\n\nBuild the TMD: m2 = 800 kg.\n  Alone, it has 2 Hz.";
+        assert_eq!(emphasised(text, false), text);
+        let bold = emphasised(text, true);
+        assert_eq!(
+            bold,
+            text.replace("Build the TMD: m2 = 800 kg.", "\x1b[1mBuild the TMD: m2 = 800 kg.\x1b[0m")
+        );
+    }
 }

@@ -23,6 +23,10 @@ pub enum StudyError {
     Field { file: String, line: usize, column: usize, problem: String },
     #[error("{file}: its kind is `{}`, for {}; a file of kind `{}` is needed here", found.name(), found.commands(), wanted.name())]
     Kind { file: String, found: Kind, wanted: Kind },
+    #[error(
+        "{file}: describes a structure for `retune design`; a study is needed here: run `retune design {file}` and take one of the studies that it writes"
+    )]
+    Structure { file: String },
     #[error("{file}: {field}: wrong type: list, expected an object")]
     List { file: String, field: String },
     #[error("{file}: {rule}")]
@@ -93,9 +97,12 @@ pub fn kind_of(path: &Path) -> Result<Kind, StudyError> {
 
 /// Refuses the text of a file that is recognised as one of another kind.
 pub(super) fn expect(wanted: Kind, text: &str, file: &str) -> Result<(), StudyError> {
-    let json: Result<Value, _> = serde_json::from_str(text);
-    match json.ok().as_ref().and_then(Kind::of) {
+    let json: Option<Value> = serde_json::from_str(text).ok();
+    match json.as_ref().and_then(Kind::of) {
         Some(found) if found != wanted => Err(StudyError::Kind { file: file.to_owned(), found, wanted }),
+        None if json.is_some_and(|json| json.get("kind").is_none() && json.get("m1").is_some()) => {
+            Err(StudyError::Structure { file: file.to_owned() })
+        }
         _ => Ok(()),
     }
 }
@@ -282,6 +289,9 @@ mod tests {
             "t.json: its kind is `table2`, for `retune table2` and `retune retention`; a file of kind `study` is needed here"
         );
         assert!(expect(Kind::Table2, r#"{ "rows": [] }"#, "t.json").is_ok());
+        let error =
+            expect(Kind::Study, r#"{ "m1": "40 t", "f1": "2 Hz" }"#, "bridge.json").expect_err("no study");
+        assert!(error.to_string().contains("run `retune design bridge.json`"), "{error}");
     }
 
     #[test]

@@ -7,9 +7,10 @@ use retune_dynamics::periodic::{Basins, Branch, EventKind, Orbit};
 use retune_model::Measure;
 use retune_report::colour::{BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION};
 use retune_report::{
-    Axis, Chart, Dash, Drawing, Key, Layer, Mark, Nodes, Place, Scale, Shape, Sheet, Stroke, Width, drawing,
-    heat_map, svg,
+    Axis, Chart, Dash, Drawing, Key, Layer, Mark, Nodes, Place, Scale, Shape, Sheet, Stroke, Width,
+    category_map, drawing, svg,
 };
+use retune_study::rounded;
 
 const STABLE: Stroke = Stroke::new(BLUE, 1.4, Dash::Solid);
 const UNSTABLE: Stroke = Stroke::new(ORANGE, 0.9, Dash::Short);
@@ -115,7 +116,7 @@ fn line(branch: &Branch, value: fn(&Orbit) -> f64, stable: bool) -> Layer {
     Layer::Line { points, stroke: if stable { STABLE } else { UNSTABLE } }
 }
 
-/// The basins: E1max of the motion on which each start of a plane ends.
+/// The basins: the motion on which each start of a plane ends, in a colour of its own.
 pub fn basins(motions: &Motions, basins: &Basins) -> String {
     let place = motions.at(basins.sample.value, 6);
     let side = |label: &str, side: usize| Nodes {
@@ -124,14 +125,63 @@ pub fn basins(motions: &Motions, basins: &Basins) -> String {
         values: basins.sides[side].clone(),
     };
     let sides = [side("x1 at the start, m", 0), side("v1 at the start, m/s", 1)];
-    let end = |end: &Option<usize>| end.map_or(f64::NAN, |end| energy(&basins.sample.attractors[end].orbit));
-    let energies: Vec<f64> = basins.ends.iter().map(end).collect();
-    let places = [Place { at: (0.0, 0.0), label: "from rest".to_owned() }];
-    let (chart, legend) = heat_map(&sides, &energies, "E1max, J", &places);
-    let irregular =
-        if basins.ends.contains(&None) { "; grey: none of the motions that are known" } else { "" };
-    let what = format!("E1max of the motion on which each start ends, at {place}{irregular}.");
-    let description = format!("{what} Marked: the start from rest.");
+    let names: Vec<String> = basins
+        .sample
+        .attractors
+        .iter()
+        .map(|one| format!("{}: E1max {} J", in_words(&one.orbit), rounded(energy(&one.orbit), 4)))
+        .collect();
+    let places = [Place { at: (0.0, 0.0), label: "the start from rest".to_owned() }];
+    let none = "irregular, or none of these";
+    let (chart, legend) = category_map(&sides, &basins.ends, &names, none, &places);
+    let what = format!("The motion on which each start ends, at {place}.");
     let sheet = Sheet::of(format!("Basins at {place}"), vec![chart]);
-    svg(&Sheet { description, legend, caption: vec![what, motions.made_by()], ..sheet })
+    let sheet = Sheet { legend, caption: vec![what.clone(), motions.made_by()], ..sheet };
+    let description = format!("{what} Colours and marks: {}.", sheet.legend_words());
+    svg(&Sheet { description, ..sheet })
+}
+
+/// A motion in words that need no legend: "repeats every 2 periods, with 2 impacts on the obstacle and 1 on the structure".
+fn in_words(orbit: &Orbit) -> String {
+    let impacts = |side: char| orbit.seen.impacts.chars().filter(|letter| *letter == side).count();
+    let every = if orbit.periods == 1 { "period".to_owned() } else { format!("{} periods", orbit.periods) };
+    let counted = |count: usize, wall: &str| {
+        format!("{count} {} on the {wall}", if count == 1 { "impact" } else { "impacts" })
+    };
+    let met = match [impacts('O'), impacts('S')] {
+        [0, 0] => "touching no wall".to_owned(),
+        [obstacle, 0] => format!("with {}", counted(obstacle, "obstacle")),
+        [0, structure] => format!("with {}", counted(structure, "structure")),
+        [obstacle, structure] => {
+            format!("with {} and {structure} on the structure", counted(obstacle, "obstacle"))
+        }
+    };
+    format!("repeats every {every}, {met}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use retune_dynamics::periodic::seen::Seen;
+
+    #[test]
+    fn contract_a_motion_is_named_in_words() {
+        let words = |periods, impacts: &str| {
+            let seen = Seen { impacts: impacts.to_owned(), ..Seen::default() };
+            in_words(&Orbit {
+                value: 1.0,
+                periods,
+                states: Vec::new(),
+                multipliers: Default::default(),
+                seen,
+            })
+        };
+        assert_eq!(words(1, ""), "repeats every period, touching no wall");
+        assert_eq!(words(1, "O"), "repeats every period, with 1 impact on the obstacle");
+        assert_eq!(words(3, "SS"), "repeats every 3 periods, with 2 impacts on the structure");
+        assert_eq!(
+            words(2, "OOS"),
+            "repeats every 2 periods, with 2 impacts on the obstacle and 1 on the structure"
+        );
+    }
 }

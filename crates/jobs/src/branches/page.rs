@@ -284,7 +284,7 @@ fn basins(motions: &Motions, basins: &Basins) -> Vec<Block> {
     let rows = known.chain(others).map(|motion| ends_on(motions, basins, motion)).collect();
     let head = ["motion", "branch", "what it is", "E1max, J", "starts", "least E1 of them, J"];
     let said = format!("Where the starts of the plane end; {STARTS} has each.");
-    let caption = format!("E1max of the motion on which each start ends, at {place}");
+    let caption = format!("The motion on which each start ends, at {place}");
     let figure = Block::figure("basins.svg", draw::basins(motions, basins), caption);
     vec![Block::words(words), figure, Block::table(said, head, rows)]
 }

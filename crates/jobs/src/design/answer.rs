@@ -50,7 +50,12 @@ pub(super) fn rows(requirements: &Requirements, compared: &Comparison) -> Vec<Ve
         };
         std::iter::once(first).chain(compared.all().zip(alike(&values, measure.unit())).map(cell)).collect()
     };
-    let mut rows: Vec<Vec<String>> = Measure::ALL.into_iter().map(row).collect();
+    // What a wall feels is a row only where a candidate strikes one, or a limit is on it.
+    let is_told = |measure: &Measure| {
+        let limited = requirements.allowed(Constraint::Of(Limit::Of(*measure))).is_finite();
+        limited || !measure.is_of_walls() || compared.all().any(|of| of.value(*measure) != 0.0)
+    };
+    let mut rows: Vec<Vec<String>> = Measure::ALL.into_iter().filter(is_told).map(row).collect();
     if let Some(error) = requirements.k1_error {
         for (place, sign) in ["-", "+"].into_iter().enumerate() {
             let first = format!("{}, k1 {sign}{}", compared.goal.name(), percent(error));
@@ -84,6 +89,9 @@ fn table(requirements: &Requirements, compared: &Comparison) -> String {
 /// Which damper to build, and why.
 pub(super) fn build(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
     let Some(chosen) = compared.chosen() else { return infeasible(requirements, compared) };
+    if compared.is_in_vain() {
+        return in_vain(compared, chosen);
+    }
     let goal = compared.goal;
     let said = |goal_of: f64| sized(goal_of, goal.unit());
     let (name, own) = (goal.name(), said(chosen.goal));
@@ -141,6 +149,17 @@ pub(super) fn build(requirements: &Requirements, compared: &Comparison) -> Vec<S
     lines
 }
 
+/// That no damper does what is asked for.
+fn in_vain(compared: &Comparison, best: &Candidate) -> Vec<String> {
+    let (goal, what) = (compared.goal, best.what.name());
+    let [none, own] = [compared.none.goal, best.goal].map(|value| sized(value, goal.unit()));
+    let words = format!(
+        "  {} is {none} without a damper and {own} with the best {what} that was found. Look at the other rows: another --goal may fall, or take more --mass.",
+        goal.name()
+    );
+    vec![format!("Build no damper for this: none was found that lowers {} by 0.1 %.", goal.name()), words]
+}
+
 /// What a formula gives, beside the best TMD.
 fn beside((formula, tmd): &(Formula, Candidate), best: f64, goal: Measure) -> String {
     let more = tmd.goal / best - 1.0;
@@ -185,7 +204,7 @@ fn infeasible(requirements: &Requirements, compared: &Comparison) -> Vec<String>
 pub(super) fn findings(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
     let mut lines: Vec<String> = costs(requirements, compared);
     lines.extend(from_rest(requirements, compared));
-    if let Some(certificate) = &compared.certificate {
+    if let Some(certificate) = compared.certificate.as_ref().filter(|_| !compared.is_in_vain()) {
         let words = legible(certificate.reason().trim_end_matches("; other starts not looked at"));
         let name = compared.chosen().map_or("", |chosen| chosen.what.name());
         lines.push(format!("How sure: the {name} is {words}."));
@@ -196,13 +215,17 @@ pub(super) fn findings(requirements: &Requirements, compared: &Comparison) -> Ve
     }
     if let Some(tried) = compared.tried {
         let tried = counted(tried as u64, "design");
-        let walls = requirements.contact().map(|contact| contact.stiffness().map(|k| rounded(k, 3)));
+        let walls = requirements.contact().map(|contact| contact.stiffness().map(|k| format!("{k:.2e}")));
         let [k1, k3] = walls.unwrap_or_default();
-        let origin = if requirements.wall.is_some() {
-            "as given"
-        } else {
-            "not given (--wall): the paper's, scaled to mass and frequency"
-        };
+        let origin = requirements.wall.map_or(
+            "not given (--wall): the paper's, scaled to mass and frequency".to_owned(),
+            |wall| {
+                let (radius, modulus) = (sized(wall.radius, "m"), sized(wall.modulus, "Pa"));
+                let loss =
+                    wall.restitution.map_or(String::new(), |e| format!(", restitution {}", rounded(e, 4)));
+                format!("as given, R = {radius}, E = {modulus}{loss}, against steel")
+            },
+        );
         lines.push(format!(
             "Walls of the SSVI NES: {origin}, K = {k1} and {k3} N/m^1.5. {tried} with walls evaluated; `retune optimize` of the study looks further."
         ));

@@ -66,6 +66,11 @@ pub struct Cost {
 }
 
 impl Comparison {
+    /// Whether even the best damper hardly lowers the goal.
+    pub fn is_in_vain(&self) -> bool {
+        self.chosen().is_some_and(|chosen| self.none.goal < 1.001 * chosen.goal)
+    }
+
     /// The dampers that were designed, the TMD first.
     pub fn dampers(&self) -> impl Iterator<Item = &Candidate> + Clone {
         std::iter::once(&self.tmd).chain(&self.ssvi)

@@ -28,6 +28,9 @@ pub(super) fn page(requirements: &Requirements, compared: &Comparison) -> Docume
             .map(str::to_owned)
             .collect();
     let rows: Vec<Vec<String>> = rows(requirements, compared);
+    let told = |measure: &Measure| !measure.is_of_walls() || compared.dampers().any(Candidate::strikes);
+    let meant = |measure: Measure| format!("{} is {}", measure.name().replace('_', " "), measure.words());
+    let meaning: Vec<String> = Measure::ALL.into_iter().filter(told).map(meant).collect();
     let damper = |of: &Candidate| {
         let row = [of.what.name().to_owned(), parameters(of), tuning(of, requirements)];
         row.to_vec()
@@ -60,6 +63,7 @@ pub(super) fn page(requirements: &Requirements, compared: &Comparison) -> Docume
             head,
             rows,
         ),
+        Block::words(format!("{}.", meaning.join("; "))),
         Block::table(
             "The dampers",
             ["damper", "parameters", "alone, on a rigid support"],
@@ -81,6 +85,7 @@ pub(super) fn page(requirements: &Requirements, compared: &Comparison) -> Docume
     let kind = if chosen.what == What::Ssvi { "The SSVI NES in its cavity" } else { "The TMD" };
     Document {
         title: match compared.choice {
+            Some(_) if compared.is_in_vain() => "Build no damper for this".to_owned(),
             Some(what) => format!("Build the {}", what.name()),
             None => "No damper keeps the limits".to_owned(),
         },
@@ -111,7 +116,11 @@ fn over(requirements: &Requirements, compared: &Comparison) -> Section {
         let figure = Block::figure("motion.svg", motion::picture(compared, line), words);
         return ("motion", "The motion", vec![figure]);
     };
-    let words = "Each quantity against frequency, once the motion is steady. Grey: what a limit forbids.";
+    let limited = Measure::ALL
+        .into_iter()
+        .any(|measure| requirements.allowed(Constraint::Of(Limit::Of(measure))).is_finite());
+    let grey = if limited { " Grey: what a limit forbids." } else { "" };
+    let words = format!("Each quantity against frequency, once the motion is steady.{grey}");
     let figure = Block::figure("band.svg", curves(requirements, compared, band), words);
     ("band", "Over the band", vec![figure])
 }

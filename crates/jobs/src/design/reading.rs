@@ -2,7 +2,7 @@
 
 use super::driving::Driving;
 use super::history;
-use super::requirements::{Dampers, Requirements, Wall};
+use super::requirements::{Dampers, Requirements, STEEL, Wall};
 use super::typed::{Specification, Typed};
 use super::words::radians;
 use crate::Error;
@@ -314,27 +314,41 @@ fn limits(specification: &Specification) -> Result<(Limits, Option<f64>), Error>
     Ok((limits, k2))
 }
 
-/// The walls: radius and Young's modulus of the damper's surfaces.
+/// Young's modulus (N/m²) and Poisson's ratio of materials that walls are named by.
+const MATERIALS: [(&str, f64, f64); 2] = [("steel", STEEL, 0.3), ("rubber", 5e6, RUBBER)];
+/// Poisson's ratio of the damper's surfaces where no material is named: that of the paper's.
+const RUBBER: f64 = 0.4;
+
+/// The walls: radius and Young's modulus or material of the damper's surfaces, and the restitution of a contact.
 fn wall(typed: &Typed) -> Result<Wall, Error> {
-    let (mut radius, mut modulus) = (None, None);
-    for part in typed.text.split(',') {
-        match part.split_once('=').map(|(name, value)| (name.trim(), value)) {
-            Some(("R", value)) => radius = Some(value),
-            Some(("E", value)) => modulus = Some(value),
+    let (mut radius, mut modulus, mut restitution, mut poisson) = (None, None, None, RUBBER);
+    let part_of = |text: &str| Typed { text: text.to_owned(), ..typed.clone() };
+    for part in typed.text.split(',').map(str::trim) {
+        let material = MATERIALS.iter().find(|(name, ..)| *name == part);
+        match (material, part.split_once('=').map(|(name, value)| (name.trim(), value))) {
+            (Some(&(_, young, ratio)), _) => (modulus, poisson) = (Some(young), ratio),
+            (_, Some(("R", value))) => radius = Some(positive(&part_of(value), "wall", unit::LENGTH)?),
+            (_, Some(("E", value))) => modulus = Some(positive(&part_of(value), "wall", unit::MODULUS)?),
+            (_, Some(("e", value))) => restitution = Some(positive(&part_of(value), "wall", unit::SHARE)?),
             _ => {
                 let problem = format!(
-                    "\"{part}\" is not known: give the radius and Young's modulus of the damper's surfaces, for instance R=20mm,E=5MPa"
+                    "\"{part}\" is not known: give the radius and Young's modulus of the damper's surfaces, for instance R=20mm,E=5MPa, or rubber or steel for E; e=0.7 is a restitution"
                 );
                 return Err(typed.refused("wall", problem));
             }
         }
     }
-    let read = |text: Option<&str>, units: &[Unit], name: &str| {
-        let Some(text) = text else {
-            return Err(typed.refused("wall", format!("{name} is missing: for instance R=20mm,E=5MPa")));
-        };
-        let typed = Typed { text: text.to_owned(), ..typed.clone() };
-        positive(&typed, "wall", units)
-    };
-    Ok(Wall { radius: read(radius, unit::LENGTH, "R")?, modulus: read(modulus, unit::MODULUS, "E")? })
+    if let Some(e) = restitution.filter(|e| *e > 1.0) {
+        return Err(
+            typed.refused("wall", format!("e = {e} is not allowed here: at most 1, which loses nothing"))
+        );
+    }
+    let missing =
+        |name: &str| typed.refused("wall", format!("{name} is missing: for instance R=20mm,E=5MPa"));
+    Ok(Wall {
+        radius: radius.ok_or_else(|| missing("R"))?,
+        modulus: modulus.ok_or_else(|| missing("E"))?,
+        poisson,
+        restitution,
+    })
 }

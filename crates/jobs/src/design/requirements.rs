@@ -6,7 +6,8 @@
 use super::driving::Driving;
 use crate::Error;
 use retune_model::{
-    Bare, Forcing, Measure, NonNegative, PerMeasure, Positive, Primary, Scene, Surfaces, den_hartog,
+    Bare, Forcing, Loss, Measure, NonNegative, PerMeasure, PoissonRatio, Positive, Primary, Restitution,
+    Scene, Surfaces, den_hartog,
 };
 use retune_optim::{Limit, Limits};
 use retune_solver::{Also, Ask, Settings, Window, extremes};
@@ -81,6 +82,12 @@ pub struct Wall {
     /// Young's modulus, N/m².
     #[serde(rename = "E")]
     pub modulus: f64,
+    /// Poisson's ratio.
+    #[serde(rename = "nu")]
+    pub poisson: f64,
+    /// Restitution of a contact at every speed; none loses nothing.
+    #[serde(rename = "e", skip_serializing_if = "Option::is_none")]
+    pub restitution: Option<f64>,
 }
 
 /// A limit that is asked for.
@@ -273,9 +280,12 @@ impl Requirements {
     pub fn contact(&self) -> Result<Surfaces, Error> {
         let scale = (self.natural_frequency() / PAPER).powi(2);
         let paper = Surfaces::for_mass(Positive::new(self.mass * scale)?)?;
-        let Some(Wall { radius, modulus }) = self.wall else { return Ok(paper) };
-        let (radius, soft, steel) = (Positive::new(radius)?, Positive::new(modulus)?, Positive::new(STEEL)?);
-        Ok(Surfaces { radius, young_1: steel, young_2: soft, young_3: steel, young_4: soft, ..paper })
+        let Some(Wall { radius, modulus, poisson, restitution }) = self.wall else { return Ok(paper) };
+        let (radius, own, steel) = (Positive::new(radius)?, Positive::new(modulus)?, Positive::new(STEEL)?);
+        let poisson = PoissonRatio::new(poisson)?;
+        let loss = restitution.map(Restitution::new).transpose()?.map_or(paper.loss, Loss::Restoring);
+        let walls = Surfaces { radius, young_1: steel, young_3: steel, loss, ..paper };
+        Ok(Surfaces { young_2: own, young_4: own, poisson_2: poisson, poisson_4: poisson, ..walls })
     }
 
     /// A study of 100 periods of the structure, the first half of which passes before maxima are taken, or of a shock or a record.
@@ -293,4 +303,4 @@ impl Requirements {
 }
 
 /// Young's modulus of steel, N/m².
-const STEEL: f64 = 2.1e11;
+pub const STEEL: f64 = 2.1e11;

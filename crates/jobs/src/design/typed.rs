@@ -87,7 +87,7 @@ pub struct Specification {
     pub k1_error: Option<Typed>,
     /// The dampers that are compared: tmd, ssvi, both.
     pub damper: Option<Typed>,
-    /// The walls of an SSVI NES, `R=20mm,E=5MPa`.
+    /// The walls of an SSVI NES, `R=20mm,E=5MPa`, `R=20mm,rubber`, with `e=0.7` for a restitution.
     pub wall: Option<Typed>,
     /// The file that all this stands in, if any.
     #[serde(skip)]

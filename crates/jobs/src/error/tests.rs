@@ -75,6 +75,7 @@ fn studies() -> Vec<StudyError> {
             problem: "scene.primary.k1: missing".into(),
         },
         StudyError::Kind { file: file.clone(), found: Kind::Fronts, wanted: Kind::Study },
+        StudyError::Structure { file: "bridge.json".into() },
         StudyError::List { file: file.clone(), field: "window".into() },
         StudyError::Rule { file: file.clone(), rule: Rule::NoDamper },
         StudyError::Several { file: file.clone(), one: Some("results/retune/k1-30000/tmd".into()) },
@@ -238,7 +239,7 @@ fn regress_the_words_of_every_error() {
         each!(stores(), StoreError: Output Input Standing Protected Journal Busy Unfinished),
         each!(errors(), Error: Store Study Setting Rule Requirement Argument Interval Part MissingParts NotHeld NotChecked NotProven Infeasible Lines Threads Run Motion
             Unusable NoStart Global Search Figure),
-        each!(studies(), StudyError: Unreadable NotText Field Kind List Rule Several NoResults Paper),
+        each!(studies(), StudyError: Unreadable NotText Field Kind Structure List Rule Several NoResults Paper),
         each!(settings(), SettingError: Form Name Number OutOfRange Absent Start Rule),
         each!(rules(), Rule: Name EmptyWindow NoDamper NoOptimize NoRestitutions NoGrid NothingVaried VariedTwice EmptyBand
             NotVaried Axis GridOutside Grid StartOutside NoRows SameName NotAllowed Record SumAndMore NoEnd),

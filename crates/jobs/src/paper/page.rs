@@ -87,7 +87,7 @@ pub fn page(items: &[(&'static Entry, Item)]) -> String {
         Verdict::ALL.map(|verdict| of_paper().filter(|one| one.verdict == verdict).count());
     let opening = vec![
         Block::Words(format!(
-            "Each table and figure of the paper beside what Retune computes, and a verdict on each statement. Of {} statements {holds} hold, {partly} hold in part, {fails} do not hold under our settings, and {undecided} cannot be decided: practically equal designs decide them differently. What is marked as our conjecture is not counted.",
+            "Each table and figure of the paper beside what Retune computes, and a verdict on each statement. Of {} statements {holds} hold, {partly} hold in part, {fails} do not hold under our settings, and {undecided} cannot be decided: practically equal designs decide them differently. What is marked as our conjecture is not counted. In the paper's words the PS is the primary structure, which is to be kept still, a TMD a damper that touches nothing, an SSVI NES one that strikes the PS or an obstacle; R1 and R2 are the shares of the largest energy that PS and damper have, and a motion T, 1, 0 repeats every period of the force, with one impact on the PS and none on the obstacle.",
             of_paper().count()
         )),
         verdicts(items),

@@ -124,7 +124,7 @@ fn picture(study: &Study, rows: &[(f64, [f64; 3])], worst: [f64; 3]) -> String {
         caption.insert(
             0,
             format!(
-                "The legend has the largest of each curve. Over every k1, each over its own band: {worst}."
+                "Each curve is named with its largest value here. Over every k1, each over its own band: {worst}."
             ),
         );
     }
@@ -173,13 +173,13 @@ mod tests {
         };
         let rows = [(5.0, [400.0, 300.0, f64::NAN]), (6.0, [1500.0, 850.0, f64::NAN])];
         let page = |relative| picture(&study(relative), &rows, [1570.0, 1051.0, f64::NAN]);
+        // The words of a figure, whatever lines they stand on.
         let plain = |text: &str| {
-            text.split("<tspan")
-                .map(|part| part.split_once('>').map_or(part, |(_, rest)| rest))
-                .collect::<String>()
+            let parts = text.split('<').map(|part| part.split_once('>').map_or(part, |(_, words)| words));
+            parts.flat_map(str::split_whitespace).collect::<Vec<_>>().join(" ")
         };
         let (own, one) = (plain(&page(true)), plain(&page(false)));
-        assert!(own.contains(": 850 J") && own.contains("Over every k") && own.contains("1051 J"), "{own}");
+        assert!(own.contains(": 850 J") && own.contains("Over every k 1") && own.contains("1051 J"), "{own}");
         assert!(one.contains(": 1051 J") && !one.contains("850 J") && !one.contains("Over every k"), "{one}");
     }
 }

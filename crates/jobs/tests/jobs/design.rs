@@ -251,6 +251,9 @@ fn contract_slips_are_refused_with_what_to_give() {
         (json!({ "limits": { "stroke": "15 N" } }), "--limit stroke: \"15 N\" is not a number in m"),
         (json!({ "damper": "nes" }), "--damper: \"nes\" is none: give tmd, ssvi or both"),
         (json!({ "wall": "R=20mm" }), "--wall: E is missing: for instance R=20mm,E=5MPa"),
+        (json!({ "wall": "steel" }), "--wall: R is missing: for instance R=20mm,E=5MPa"),
+        (json!({ "wall": "R=20mm,wood" }), "--wall: \"wood\" is not known: give the radius"),
+        (json!({ "wall": "R=20mm,steel,e=1.2" }), "--wall: e = 1.2 is not allowed here: at most 1"),
     ] {
         let mut specification = good_ones.clone();
         specification
@@ -267,6 +270,36 @@ fn contract_slips_are_refused_with_what_to_give() {
         let sentence = refused(asked(specification).within("a.json").requirements()).to_string();
         assert!(sentence.starts_with("a.json: ") || words.contains("missing: "), "{sentence}");
     }
+}
+
+/// A material in words is its numbers; all else of the walls is the paper's.
+#[test]
+fn exact_walls_in_words_are_their_numbers() {
+    let of = |wall: &str| {
+        let floor =
+            json!({ "m1": "40t", "f1": "2Hz", "zeta": "0.5%", "force": "280N", "mass": "2%", "wall": wall });
+        json!(good(good(asked(floor).requirements()).contact()))
+    };
+    assert_eq!(of("R=20mm,rubber"), of("E=5MPa, R=2cm"));
+    let steel = of("R=20mm,steel,e=0.7");
+    let number = |name: &str| steel[name].as_f64().expect(name);
+    assert_eq!(["R", "E1", "E2", "E4", "nu2", "nu4"].map(number), [0.02, 2.1e11, 2.1e11, 2.1e11, 0.3, 0.3]);
+    assert_eq!(steel["loss"], json!({ "restitution": 0.7 }));
+}
+
+/// The energy that a short shock leaves is there before a damper has moved: nobody is told to build one.
+#[test]
+fn regress_a_damper_that_does_nothing_is_not_recommended() {
+    let shock = json!({
+        "m1": "40t", "f1": "2Hz", "zeta": "0.5%", "shock": "half-sine,20ms,5g", "mass": "2%", "damper": "tmd"
+    });
+    let desk = Desk::new();
+    let requirements = good(asked(shock).requirements());
+    let request = Request { out: Some(desk.path("out")), ..Request::new(&desk.path("out")) };
+    drop(good(design(&requirements, &request, &Silent)));
+    let answer = desk.read("out/answer.txt");
+    assert!(answer.contains("Build no damper for this") && !answer.contains("Build the TMD"), "{answer}");
+    assert!(desk.read("out/README.md").starts_with("# Build no damper for this"));
 }
 
 /// What no TMD of this mass keeps is told, with a mass that does.

@@ -4,7 +4,7 @@ use crate::{read, request, search};
 use retune_jobs::simulate::{Simulation, Trajectory, simulate};
 use retune_jobs::table2::table2;
 use retune_jobs::{Error, Silent};
-use retune_model::Parameter;
+use retune_model::{Measure, Parameter};
 use retune_solver::{Remedy, SolverError};
 use retune_store::Error as StoreError;
 use retune_study::{Setting, Study};
@@ -270,4 +270,26 @@ fn contract_without_a_force_there_is_no_transmissibility() {
     let run = good(simulate(&study, None));
     assert_eq!((run.summary.transmissibility(), &json!(run)["transmissibility"]), (None, &json!(null)));
     assert!(!run.to_string().contains("transmiss"));
+    assert!(
+        run.to_string().contains("\nR1, R2      none: nothing has energy")
+            && !run.to_string().contains("NaN")
+    );
+}
+
+/// Every value begins in one column, and those of a force a million times as small keep their digits.
+#[test]
+fn regress_values_stand_in_a_column_and_keep_their_digits() {
+    let of = |name: &str| retune_study::read(&studies().join(name)).expect("a study");
+    let small = of("tmd.json").with(&[Setting::new(Parameter::P, 8e-4)]).expect("a study");
+    for study in [small.clone(), of("random-tmd.json")] {
+        for line in good(simulate(&study, None)).to_string().lines().skip(1) {
+            let letters: Vec<char> = line.chars().collect();
+            assert!(letters[11] == ' ' && letters[12] != ' ', "{line}");
+        }
+    }
+    let run = good(simulate(&small, None));
+    let words = run.to_string();
+    let said = words.lines().find_map(|line| line.strip_prefix("E1max       ")).expect("a line");
+    let said: f64 = said.split(' ').next().and_then(|text| text.parse().ok()).expect("a number");
+    assert!((said / run.summary.largest(Measure::Energy) - 1.0).abs() < 1e-7, "{words}");
 }

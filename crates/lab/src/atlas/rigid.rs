@@ -5,11 +5,12 @@
 
 use super::{WAYS, Way};
 use crate::panel::{Line, WIDTHS, panel, sheet};
+use crate::records::{number, records};
 use crate::runs::{Found, errors, run, settings};
 use crate::scenes::{Case, SSVI, stiffer};
 use crate::{Any, decades};
 use retune_model::Side;
-use retune_report::colour::{BLACK, BLUE, GREEN, GREY, VERMILION};
+use retune_report::colour::{BLACK, BLUE, Colour, GREEN, GREY, VERMILION};
 use retune_report::{Axis, Shape};
 use retune_solver::observe::{Observer, PrimaryEnergy, RunningMaximum, Segment};
 use retune_solver::{Contacts, Hybrid, Method, Motion, Phase};
@@ -81,25 +82,18 @@ pub fn distance(n: i32) -> Any<[f64; 2]> {
     Ok([e1, state])
 }
 
-/// A line of the chart: a method, and its value at each stiffness.
-type Of = (Way, Vec<(f64, f64)>);
-
-/// The table, and its chart.
-pub fn table(chart: &Path) -> Any<String> {
+/// The table.
+pub fn table() -> Any<String> {
     let mut text = String::from(
         "stiffness_factor,method,setting,E1max_error,final_state_error,impacts,expected_impacts,evaluations,time_s,E1max_from_rigid,final_state_from_rigid,failure\n",
     );
-    let mut apart: Vec<Of> = WAYS.iter().map(|way| (*way, Vec::new())).collect();
-    let mut costs = apart.clone();
-    let mut limit: [Vec<(f64, f64)>; 2] = Default::default();
     for n in -2..=8 {
-        let (case, factor) = (case(n), 10f64.powi(n));
+        let case = case(n);
         let reference = run(&case, &settings(Method::Hybrid, Contacts::Located, 1e-12), false)?;
         let expected = reference.impacts;
         let from_rigid = distance(n)?;
-        (0..2).for_each(|i| limit[i].push((factor, from_rigid[i])));
         let from_rigid = format!("{:.2e},{:.2e}", from_rigid[0], from_rigid[1]);
-        for (i, way) in WAYS.iter().enumerate() {
+        for way in &WAYS {
             write!(text, "1e{n},{},{:e},", way.name, way.setting)?;
             match run(&case, &way.settings(), true) {
                 Ok(found) => {
@@ -107,20 +101,23 @@ pub fn table(chart: &Path) -> Any<String> {
                     let Found { impacts, evaluations, seconds, .. } = found;
                     write!(text, "{e1:.2e},{state:.2e},{impacts},{expected},{evaluations},{seconds:.3e},")?;
                     writeln!(text, "{from_rigid},")?;
-                    apart[i].1.push((factor, state));
-                    costs[i].1.push((factor, evaluations as f64));
                 }
                 Err(said) => writeln!(text, ",,,{expected},,,{from_rigid},{}", said.replace(',', ";"))?,
             }
         }
     }
-    draw(chart, apart, costs, limit)?;
     Ok(text)
 }
 
-fn draw(path: &Path, errors: Vec<Of>, costs: Vec<Of>, limit: [Vec<(f64, f64)>; 2]) -> Any<()> {
-    let [thin, normal, bold, boldest] = WIDTHS;
-    let look = |way: &Way| match (way.method, way.contacts) {
+/// The methods that share a frame, and what they have in common.
+const GROUPS: [(&str, &[Method]); 2] = [
+    ("explicit, steps by an estimate", &[Method::Dop853, Method::Ode45, Method::Ode23]),
+    ("stiff, and fixed steps", &[Method::Ode23s, Method::Rk4, Method::Euler]),
+];
+
+const fn look(way: &Way) -> (Colour, f64, Shape) {
+    let [thin, normal, _, boldest] = WIDTHS;
+    match (way.method, way.contacts) {
         (Method::Hybrid, _) => (VERMILION, boldest, Shape::Disc),
         (Method::Ode23s, _) => (BLACK, normal, if way.setting > 1e-4 { Shape::Square } else { Shape::Disc }),
         (Method::Rk4, _) => (GREEN, normal, Shape::Disc),
@@ -130,38 +127,51 @@ fn draw(path: &Path, errors: Vec<Of>, costs: Vec<Of>, limit: [Vec<(f64, f64)>; 2
         (Method::Ode45, _) => (BLUE, thin, Shape::Ring),
         (_, Contacts::Located) => (BLUE, normal, Shape::Triangle),
         _ => (BLUE, thin, Shape::Square),
-    };
-    let lines = |of: Vec<Of>| {
-        let line = |(way, points): Of| Line::new(way.name, points, look(&way));
-        of.into_iter().rev().map(line).collect::<Vec<_>>()
+    }
+}
+
+/// The chart of the table.
+pub fn draw(path: &Path, table: &str) -> Any<()> {
+    let [thin, normal, bold, _] = WIDTHS;
+    let rows = records(table);
+    let points = |of: &str, column: &str| -> Vec<(f64, f64)> {
+        let own = rows.iter().filter(|row| row["method"] == of);
+        own.map(|row| (number(row, "stiffness_factor"), number(row, column))).collect()
     };
     let x = || Axis::log("stiffness of the contact, times that of the SSVI", (1e-2, 1e8));
-    let [e1, state] = limit;
+    let mut panels = Vec::new();
+    for (what, column, label, range) in [
+        ("Error of the final state", "final_state_error", "relative error", (1e-10, 10.0)),
+        ("Cost", "evaluations", "evaluations of the right-hand side", (1e2, 1e6)),
+    ] {
+        for (group, methods) in GROUPS {
+            let own = |way: &&Way| way.method == Method::Hybrid || methods.contains(&way.method);
+            let all = WAYS.iter().rev().filter(own);
+            let all = all.map(|way| Line::new(way.name, points(way.name, column), look(way)));
+            panels.push(panel(
+                &format!("{what}: {group}"),
+                x(),
+                Axis::log(label, range),
+                all.collect(),
+                170.0,
+            ));
+        }
+    }
+    let [e1, state] =
+        ["E1max_from_rigid", "final_state_from_rigid"].map(|column| points(WAYS[0].name, column));
     let (first, at) = state.last().map_or((1.0, 1.0), |p| *p);
     let slope = decades(-8, 2).into_iter().rev().map(|f| (f, at * (f / first).powf(-0.4))).collect();
-    let panels = vec![
-        panel(
-            "Error of the final state",
-            x(),
-            Axis::log("relative error", (1e-10, 10.0)),
-            lines(errors),
-            170.0,
-        ),
-        panel("Cost", x(), Axis::log("evaluations of the right-hand side", (1e2, 1e6)), lines(costs), 170.0),
-        panel(
-            "Hertz's contact against rigid walls",
-            x(),
-            Axis::log("distance from rigid walls", (1e-8, 1e2)),
-            vec![
-                Line {
-                    name: "slope −2/5".to_owned(), points: slope, colour: GREY, width: thin, shape: None
-                },
-                Line::new("E1max", e1, (BLUE, normal, Shape::Disc)),
-                Line::new("final state", state, (VERMILION, bold, Shape::Disc)),
-            ],
-            170.0,
-        ),
-    ];
+    panels.push(panel(
+        "Hertz's contact against rigid walls",
+        x(),
+        Axis::log("distance from rigid walls", (1e-8, 1e2)),
+        vec![
+            Line { name: "slope −2/5".to_owned(), points: slope, colour: GREY, width: thin, shape: None },
+            Line::new("E1max", e1, (BLUE, normal, Shape::Disc)),
+            Line::new("final state", state, (VERMILION, bold, Shape::Disc)),
+        ],
+        170.0,
+    ));
     let note = "Two-sided SSVI, 10 s. Lines end where a method gave up or blew up. Below: the hybrid against instantaneous elastic impacts; a contact lasts as long as K^(−2/5). Points beyond the axes lie on their ends.";
     sheet(path, "Toward rigid walls", &[note], 2, panels)
 }

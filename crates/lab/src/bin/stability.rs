@@ -1,4 +1,5 @@
-//! `just lab stability`: every method on every difficulty, into `results/stability/`; `just lab stability manifest` writes only its manifest.
+//! `just lab stability`: every method on every difficulty, into `results/stability/`; `just lab stability manifest` writes only its manifest, and
+//! `just lab stability pictures` only the charts of `missed.csv` and `rigid.csv`, and the manifest.
 
 use rayon::prelude::*;
 use retune_jobs::methods;
@@ -18,6 +19,15 @@ fn main() -> Any<()> {
     if std::env::args().nth(1).as_deref() == Some("manifest") {
         return seal(folder);
     }
+    let drawn = || {
+        let text = |name: &str| fs::read_to_string(folder.join(name));
+        missed::draw(&folder.join("missed.svg"), &text("missed.csv")?)?;
+        rigid::draw(&folder.join("rigid.svg"), &text("rigid.csv")?)
+    };
+    if std::env::args().nth(1).as_deref() == Some("pictures") {
+        drawn()?;
+        return seal(folder);
+    }
     let rows = rows()?;
     fs::write(folder.join("atlas.csv"), atlas_csv(&rows)?)?;
     draw::matrix(&folder.join("atlas.svg"), &rows)?;
@@ -27,13 +37,14 @@ fn main() -> Any<()> {
     for (name, table, what) in [
         ("stable_steps", stable::table(&chart("stable_steps"))?, STABLE),
         ("energy", energy::table(&chart("energy"))?, ENERGY),
-        ("missed", missed::table(&chart("missed"))?, MISSED),
-        ("rigid", rigid::table(&chart("rigid"))?, RIGID),
+        ("missed", missed::table()?, MISSED),
+        ("rigid", rigid::table()?, RIGID),
         ("objective", values, OBJECTIVE),
     ] {
         write!(text, "\n{what}\n\n![{name}]({name}.svg)\n\nNumbers: [`{name}.csv`]({name}.csv).\n")?;
         fs::write(folder.join(format!("{name}.csv")), table)?;
     }
+    drawn()?;
     let cells = |line: &str| format!("| {} |\n", line.replace(',', " | "));
     let mut lines = optima.lines();
     let head = lines.next().unwrap_or_default();

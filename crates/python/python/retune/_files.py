@@ -93,7 +93,8 @@ def design(
     ``record``, "quake.csv,unit=g", of which largest values count from ``after`` (s) on. ``mass`` is that of the damper (kg),
     ``stroke`` the largest deflection of its spring (m), ``k2_max`` the largest stiffness of its spring (N/m), ``k1_error`` the share by
     which the stiffness of the structure may be off. ``goal`` is what is made small, ``limits`` has the largest value allowed of other
-    quantities, ``damper`` is "tmd", "ssvi" or "both", ``wall`` has the damper's surfaces ("R=20mm,E=5MPa").
+    quantities, ``damper`` is "tmd", "ssvi" or "both", ``wall`` has the damper's surfaces ("R=20mm,E=5MPa",
+    "R=20mm,rubber", "R=20mm,steel,e=0.7").
     Each number may be a text with a unit: ``band="1.8Hz..2.2Hz", mass="2 %"``.
     """
     wishes = {

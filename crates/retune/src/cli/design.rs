@@ -1,8 +1,10 @@
 //! The arguments of `design`.
 
+use super::named::Named;
 use super::running::Running;
 use clap::Args;
 use retune_jobs::design::{Specification, Typed};
+use retune_model::Measure;
 use std::path::PathBuf;
 
 /// What is typed after most options: a number in the SI unit, or one with its unit.
@@ -61,11 +63,11 @@ pub struct Design {
     #[arg(long, value_name = "MASS")]
     pub mass: Option<Typed>,
     /// What is made small: E1max, x1max, v1max, a1max, ground-force [default: E1max]
-    #[arg(long, value_name = "NAME")]
-    pub goal: Option<Typed>,
+    #[arg(long, value_name = "NAME", value_parser = Named::<String>::new(goals), hide_possible_values = true)]
+    pub goal: Option<String>,
     /// The largest value allowed of a quantity (repeatable), e.g. stroke=15mm, x1max=2mm, a1max=0.5m/s2, ground-force=2kN, k2=600N/m
-    #[arg(long, value_name = "NAME=VALUE")]
-    pub limit: Vec<Typed>,
+    #[arg(long, value_name = "NAME=VALUE", value_parser = Named::<String>::new(limits), hide_possible_values = true)]
+    pub limit: Vec<String>,
     /// The same as --limit stroke=...
     #[arg(long, value_name = "LENGTH", hide = true)]
     pub stroke: Option<Typed>,
@@ -76,14 +78,28 @@ pub struct Design {
     #[arg(long, value_name = "SHARE")]
     pub k1_error: Option<Typed>,
     /// Which dampers: tmd (at once), ssvi, both [default: both, and the better one is recommended]
-    #[arg(long, value_name = "WHICH")]
-    pub damper: Option<Typed>,
-    /// The walls of an SSVI NES: radius and Young's modulus of the damper's surfaces, e.g. R=20mm,E=5MPa [default: scaled from the paper's]
+    #[arg(long, value_name = "WHICH", value_parser = Named::<String>::new(dampers), hide_possible_values = true)]
+    pub damper: Option<String>,
+    /// The walls of an SSVI NES: radius and Young's modulus of the damper's surfaces, e.g. R=20mm,E=5MPa, or rubber or steel for E, and a restitution e=0.7 [default: scaled from the paper's, without loss]
     #[arg(long, value_name = "R=..,E=..")]
     pub wall: Option<Typed>,
     /// The options of the run.
     #[command(flatten)]
     pub running: Running,
+}
+
+/// What a shell completes.
+fn goals() -> Vec<String> {
+    Measure::OF_STRUCTURE.map(|measure| measure.name().to_owned()).to_vec()
+}
+
+fn limits() -> Vec<String> {
+    let others = ["cavity", "k2"];
+    Measure::ALL.map(Measure::name).into_iter().chain(others).map(|name| format!("{name}=")).collect()
+}
+
+fn dampers() -> Vec<String> {
+    ["tmd", "ssvi", "both"].map(str::to_owned).to_vec()
 }
 
 const EXAMPLES: &str = "\
@@ -118,12 +134,12 @@ impl Design {
             after: after.clone(),
             band,
             mass: mass.clone(),
-            goal: goal.clone(),
-            limit: limit.clone(),
+            goal: goal.clone().map(Typed::from),
+            limit: limit.iter().cloned().map(Typed::from).collect(),
             stroke: stroke.clone(),
             k2_max: k2_max.clone(),
             k1_error: k1_error.clone(),
-            damper: damper.clone(),
+            damper: damper.clone().map(Typed::from),
             wall: wall.clone(),
             ..Specification::default()
         }

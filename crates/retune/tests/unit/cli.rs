@@ -47,6 +47,11 @@ fn contract_values_are_completed() {
     assert_eq!((completed("over", "omega"), completed("over", "m1")), (2, 1), "sweep and branches");
     assert_eq!(completed("quantity", "contact_pressure"), 1);
     assert_eq!(completed("set", "restitution="), 2, "simulate and prove");
+    assert_eq!(
+        [("goal", "a1max"), ("limit", "stroke="), ("damper", "ssvi")]
+            .map(|(option, word)| completed(option, word)),
+        [1; 3]
+    );
     let refused =
         |words: &[&str]| <Cli as clap::Parser>::try_parse_from(words).expect_err("wrong").to_string();
     let said = refused(&["retune", "sweep", "a.json", "--over", "omga", "--from", "1", "--to", "2"]);

@@ -1,0 +1,342 @@
+//! Names beside lines instead of a legend: each stands where it touches no line and is nearest to its own, with a thin line to it.
+//!
+//! A reader then need not look from the legend to the line and back. The frame is a grid of cells of [`CELL`] pt, each with a bit for every line
+//! that passes it, so that a place is judged at once, however many points a line has.
+
+use crate::chart::{Key, Layer, Stroke};
+use crate::layout::{LINE, Layout, SMALL};
+use crate::path::{Rect, clip};
+use crate::text::ems;
+
+/// The most lines that are named so.
+const MOST: usize = 6;
+/// Side of a cell, pt.
+const CELL: f64 = 1.0;
+/// Places along a line at which a name is tried.
+const ALONG: usize = 96;
+/// Distances of a name from its line, pt.
+const AWAY: [f64; 7] = [3.0, 7.0, 13.0, 21.0, 31.0, 45.0, 65.0];
+/// Space about a name, pt.
+const SPACE: f64 = 2.0;
+/// What is no line with a name: marks, rules, texts.
+const OTHER: u32 = 1 << MOST;
+/// A name that has been placed.
+const NAME: u32 = OTHER << 1;
+
+/// A name beside its line.
+#[derive(Clone, Debug)]
+pub(crate) struct Direct {
+    /// Its lines.
+    pub text: Vec<String>,
+    /// The rectangle of the text.
+    pub rect: Rect,
+    /// From the line to the name.
+    pub leader: [(f64, f64); 2],
+    pub stroke: Stroke,
+}
+
+/// The names of all lines of a legend beside them, in the order of `keys`; none if one finds no place, or if there are no lines or too many.
+pub(crate) fn direct(layout: &Layout, keys: &[(Key, String)]) -> Option<Vec<Direct>> {
+    let named: Vec<(Stroke, &str)> = keys.iter().filter_map(line).collect();
+    if named.is_empty() || named.len() > MOST {
+        return None;
+    }
+    let mut grid = Grid::new(layout.frame);
+    let mut paths = vec![Vec::new(); named.len()];
+    for layer in &layout.chart.layers {
+        draw(&mut grid, &mut paths, layer, &named, layout)?;
+    }
+    // The lines with the least room first.
+    let mut order: Vec<usize> = (0..named.len()).collect();
+    order.sort_by_key(|&i| paths[i].len());
+    let mut all: Vec<Option<Direct>> = vec![None; named.len()];
+    for i in order {
+        let found = grid.place(&paths[i], i, named[i])?;
+        grid.fill(found.rect, NAME);
+        grid.segment(found.leader, NAME);
+        all[i] = Some(found);
+    }
+    all.into_iter().collect()
+}
+
+/// The stroke and the name of a line in a legend.
+pub(crate) fn line((key, text): &(Key, String)) -> Option<(Stroke, &str)> {
+    match key {
+        Key::Line(stroke) => Some((*stroke, text)),
+        _ => None,
+    }
+}
+
+/// Marks a layer in the grid, and collects the places of the lines with names; none if something covers the frame.
+fn draw(
+    grid: &mut Grid,
+    paths: &mut [Vec<(f64, f64)>],
+    layer: &Layer,
+    named: &[(Stroke, &str)],
+    layout: &Layout,
+) -> Option<()> {
+    let [left, top, right, bottom] = layout.frame;
+    let mut through = |points: &mut dyn Iterator<Item = (f64, f64)>, stroke: &Stroke| {
+        let own = named.iter().position(|(of, _)| same(of, stroke));
+        let points: Vec<(f64, f64)> = points.collect();
+        for ends in points.windows(2).filter_map(|pair| clip(layout.frame, pair[0], pair[1])) {
+            grid.segment(ends, own.map_or(OTHER, |own| 1 << own));
+            if let Some(own) = own {
+                paths[own].extend(along(ends));
+            }
+        }
+    };
+    match layer {
+        Layer::Line { points, stroke } => {
+            through(&mut points.iter().map(|&point| layout.at(point)), stroke);
+        }
+        Layer::Steps { points, stroke } => {
+            let corner = |pair: &[(f64, f64)]| [(pair[1].0, pair[0].1), pair[1]];
+            let all = points.first().copied().into_iter().chain(points.windows(2).flat_map(corner));
+            through(&mut all.map(|point| layout.at(point)), stroke);
+        }
+        Layer::Upright { x, stroke } => {
+            let at = layout.at((*x, f64::NAN)).0;
+            through(&mut [(at, top), (at, bottom)].into_iter(), stroke);
+        }
+        Layer::Level { y, stroke } => {
+            let at = layout.at((f64::NAN, *y)).1;
+            through(&mut [(left, at), (right, at)].into_iter(), stroke);
+        }
+        Layer::Marks { points, mark } => {
+            let half = 0.5 * mark.size + 1.0;
+            for (x, y) in points.iter().map(|&point| layout.at(point)) {
+                grid.fill([x - half, y - half, x + half, y + half], OTHER);
+            }
+        }
+        Layer::Dots { points, size, .. } => {
+            for (x, y) in points.iter().map(|&point| layout.at(point)) {
+                grid.fill([x - size, y - size, x + size, y + size], OTHER);
+            }
+        }
+        Layer::Text { at, text, .. } => {
+            let ((x, y), half) = (layout.at(*at), 0.5 * SMALL * ems(text));
+            grid.fill([x - half, y - SMALL, x + half, y + SMALL], OTHER);
+        }
+        Layer::Band { .. } => {}
+        Layer::Map { .. } | Layer::Cells { .. } | Layer::Name { .. } => return None,
+    }
+    Some(())
+}
+
+fn same(a: &Stroke, b: &Stroke) -> bool {
+    a.colour == b.colour && a.dash == b.dash && a.width == b.width
+}
+
+/// The points of a segment, half a cell apart.
+fn along([from, to]: [(f64, f64); 2]) -> impl Iterator<Item = (f64, f64)> {
+    let steps = (2.0 * (to.0 - from.0).hypot(to.1 - from.1) / CELL).ceil().max(1.0);
+    let at = move |i: usize| {
+        let share = i as f64 / steps;
+        (from.0 + share * (to.0 - from.0), from.1 + share * (to.1 - from.1))
+    };
+    (0..=steps as usize).map(at)
+}
+
+#[cfg(test)]
+fn inside([left, top, right, bottom]: Rect, (x, y): (f64, f64)) -> bool {
+    (left..=right).contains(&x) && (top..=bottom).contains(&y)
+}
+
+/// What passes each cell of a frame.
+struct Grid {
+    frame: Rect,
+    columns: usize,
+    rows: usize,
+    cells: Vec<u32>,
+}
+
+impl Grid {
+    fn new(frame: Rect) -> Self {
+        let cells = |length: f64| (length / CELL).ceil().max(1.0) as usize;
+        let (columns, rows) = (cells(frame[2] - frame[0]), cells(frame[3] - frame[1]));
+        Self { frame, columns, rows, cells: vec![0; columns * rows] }
+    }
+
+    /// The cells of a rectangle, as ranges of columns and rows.
+    fn range(&self, [left, top, right, bottom]: Rect) -> [std::ops::Range<usize>; 2] {
+        let cell = |v: f64, from: f64, count: usize| (((v - from) / CELL).max(0.0) as usize).min(count);
+        let [x, y] = [self.frame[0], self.frame[1]];
+        let columns = cell(left, x, self.columns)..cell(right + CELL, x, self.columns);
+        [columns, cell(top, y, self.rows)..cell(bottom + CELL, y, self.rows)]
+    }
+
+    fn fill(&mut self, rect: Rect, bits: u32) {
+        let [columns, rows] = self.range(rect);
+        for row in rows {
+            for cell in &mut self.cells[row * self.columns..][columns.clone()] {
+                *cell |= bits;
+            }
+        }
+    }
+
+    /// All bits within a rectangle.
+    fn within(&self, rect: Rect) -> u32 {
+        let [columns, rows] = self.range(rect);
+        rows.flat_map(|row| &self.cells[row * self.columns..][columns.clone()])
+            .fold(0, |all, bits| all | bits)
+    }
+
+    fn segment(&mut self, ends: [(f64, f64); 2], bits: u32) {
+        for (x, y) in along(ends) {
+            let [columns, rows] = self.range([x, y, x, y]);
+            if let (Some(column), Some(row)) = (columns.into_iter().next(), rows.into_iter().next()) {
+                self.cells[row * self.columns + column] |= bits;
+            }
+        }
+    }
+
+    /// Whether a segment meets none of the bits but about its beginning.
+    fn is_free(&self, ends: [(f64, f64); 2], bits: u32) -> bool {
+        let beginning = |(x, y): (f64, f64)| (x - ends[0].0).hypot(y - ends[0].1) < 1.5 * CELL;
+        along(ends).filter(|point| !beginning(*point)).all(|(x, y)| self.within([x, y, x, y]) & bits == 0)
+    }
+
+    /// The best place of the name of a line: near to it, far from the others, rather on the right.
+    fn place(&self, path: &[(f64, f64)], own: usize, (stroke, text): (Stroke, &str)) -> Option<Direct> {
+        let shapes = shapes(text);
+        let found = shapes.into_iter().map(|lines| self.place_lines(path, own, stroke, lines));
+        found.flatten().min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, found)| found)
+    }
+
+    /// As [`Self::place`], of a name that is broken into lines; with what it costs.
+    fn place_lines(
+        &self,
+        path: &[(f64, f64)],
+        own: usize,
+        stroke: Stroke,
+        text: Vec<String>,
+    ) -> Option<(f64, Direct)> {
+        let width = text.iter().map(|line| SMALL * ems(line)).fold(0.0, f64::max);
+        let height = SMALL + LINE * SMALL * (text.len() - 1) as f64;
+        let (half, others) = ((0.5 * width, 0.5 * height), !(1 << own));
+        let [left, top, right, bottom] = self.frame;
+        let mut best: Option<(f64, Direct)> = None;
+        for &(x, y) in path.iter().step_by(path.len().div_ceil(ALONG).max(1)) {
+            // Where its line lies on another, a name would stand for both.
+            if self.within(around([x, y, x, y], 1.0)) & others != 0 {
+                continue;
+            }
+            let across = x.clamp(left + SPACE + half.0, (right - SPACE - half.0).max(left + SPACE + half.0));
+            let above = |away: f64, sign: f64| (across, y + sign * (away + half.1));
+            let beside = |away: f64, sign: f64| (x + sign * (away + half.0), y);
+            let oblique = |away: f64, right: f64, down: f64| {
+                (x + right * (0.7 * away + half.0), y + down * (0.7 * away + half.1))
+            };
+            let sides = |away| {
+                let straight = [above(away, -1.0), above(away, 1.0), beside(away, 1.0), beside(away, -1.0)];
+                let corners = [(1.0, -1.0), (1.0, 1.0), (-1.0, -1.0), (-1.0, 1.0)];
+                straight.into_iter().chain(corners.map(|(right, down)| oblique(away, right, down)))
+            };
+            for (away, (cx, cy)) in
+                AWAY.into_iter().flat_map(|away| sides(away).map(move |middle| (away, middle)))
+            {
+                let rect = [cx - half.0, cy - half.1, cx + half.0, cy + half.1];
+                let fits = rect[0] >= left + SPACE && rect[2] <= right - SPACE;
+                let fits = fits && rect[1] >= top + SPACE && rect[3] <= bottom - SPACE;
+                let leader = [(x, y), (x.clamp(rect[0], rect[2]), y.clamp(rect[1], rect[3]))];
+                if !fits || self.within(around(rect, 1.0)) != 0 || !self.is_free(leader, NAME) {
+                    continue;
+                }
+                let crosses = f64::from(u8::from(!self.is_free(leader, others)));
+                let crowded = |by: f64| f64::from(u8::from(self.within(around(rect, by)) & others != 0));
+                let crowded = 8.0 * crowded(4.0) + 4.0 * crowded(8.0);
+                let cost = away + 20.0 * crosses + crowded + 6.0 * (right - x) / (right - left);
+                if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+                    best = Some((cost, Direct { text: text.clone(), rect, leader, stroke }));
+                }
+            }
+        }
+        best
+    }
+}
+
+/// A name on one line, and on two if it has several words.
+fn shapes(text: &str) -> Vec<Vec<String>> {
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let breaks = 1..words.len();
+    let two = breaks.map(|at| [words[..at].join(" "), words[at..].join(" ")].to_vec());
+    let width = |lines: &Vec<String>| lines.iter().map(|line| ems(line)).fold(0.0, f64::max);
+    let narrow = two.min_by(|a, b| width(a).total_cmp(&width(b)));
+    std::iter::once(vec![text.to_owned()]).chain(narrow).collect()
+}
+
+fn around([left, top, right, bottom]: Rect, by: f64) -> Rect {
+    [left - by, top - by, right + by, bottom + by]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::colour::{BLACK, BLUE, ORANGE};
+    use crate::layout::{Margins, layout};
+    use crate::{Axis, Chart, Dash};
+
+    /// Resonance curves of some damping ratios with their legend.
+    fn curves(dampings: &[f64]) -> (Chart, Vec<(Key, String)>) {
+        let looks = [(BLACK, Dash::Short), (BLUE, Dash::Long), (ORANGE, Dash::Solid), (BLUE, Dash::Dots)];
+        let (mut layers, mut legend) = (Vec::new(), Vec::new());
+        for (i, zeta) in dampings.iter().enumerate() {
+            let (colour, dash) = looks[i % looks.len()];
+            let stroke = Stroke::new(colour, 1.0 + i as f64, dash);
+            let value = |r: f64| (r, 1.0 / ((1.0 - r * r).powi(2) + (2.0 * zeta * r).powi(2)).sqrt());
+            layers.push(Layer::line((0..=400).map(|k| value(0.5 + 0.0025 * f64::from(k))), stroke));
+            legend.push((Key::Line(stroke), format!("damping ratio {zeta}")));
+        }
+        let y = Axis::linear("amplification", (0.0, 11.0));
+        (Chart::of(Axis::linear("ratio", (0.5, 1.5)), y, layers, 170.0), legend)
+    }
+
+    fn meets(a: Rect, b: Rect) -> bool {
+        a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
+    }
+
+    #[test]
+    fn contract_names_meet_no_line_and_no_other_name_and_each_leads_to_its_own_line() {
+        for dampings in [&[0.05, 0.1, 0.2][..], &[0.05], &[0.05, 0.07, 0.1, 0.15]] {
+            let (chart, legend) = curves(dampings);
+            let laid = layout(&chart, [3.0, 3.0, 238.0, 173.0], true, Margins::default());
+            let names = direct(&laid, &legend).expect("room for all");
+            assert_eq!(names.len(), dampings.len());
+            for (i, name) in names.iter().enumerate() {
+                assert_eq!(name.text.join(" "), legend[i].1);
+                assert!(names[..i].iter().all(|other| !meets(name.rect, other.rect)), "{names:?}");
+                for (k, layer) in chart.layers.iter().enumerate() {
+                    let Layer::Line { points, .. } = layer else { panic!("{layer:?}") };
+                    let places: Vec<(f64, f64)> = points.iter().map(|&point| laid.at(point)).collect();
+                    assert!(
+                        !places.iter().any(|&place| inside(name.rect, place)),
+                        "{:?} on line {k}",
+                        name.text
+                    );
+                    let (x, y) = name.leader[0];
+                    let off = places.windows(2).map(|pair| {
+                        let (dx, dy) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
+                        let share = ((x - pair[0].0) * dx + (y - pair[0].1) * dy) / (dx * dx + dy * dy);
+                        let share = share.clamp(0.0, 1.0);
+                        (x - pair[0].0 - share * dx).hypot(y - pair[0].1 - share * dy)
+                    });
+                    let off = off.fold(f64::INFINITY, f64::min);
+                    assert!(if k == i { off < 0.1 } else { off > 0.7 }, "{:?} to line {k}: {off}", name.text);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn contract_lines_that_cannot_be_told_apart_or_are_too_many_keep_their_legend() {
+        let cell = [3.0, 3.0, 238.0, 173.0];
+        let found = |dampings: &[f64]| {
+            let (chart, legend) = curves(dampings);
+            direct(&layout(&chart, cell, true, Margins::default()), &legend).map(|names| names.len())
+        };
+        assert_eq!(found(&[0.1, 0.1]), None);
+        assert_eq!(found(&[0.05, 0.06, 0.08, 0.1, 0.15, 0.2, 0.3]), None);
+        assert_eq!(found(&[]), None);
+    }
+}
