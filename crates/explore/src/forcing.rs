@@ -45,7 +45,7 @@ pub fn curve(forcing: &Forcing, [from, to]: [f64; 2], columns: usize) -> Thin<1>
         Some(course) => {
             let Some(samples) = course.samples() else { return thinning.finish() };
             push(samples.time(0), 0.0);
-            samples.values().iter().enumerate().for_each(|(i, value)| push(samples.time(i), *value));
+            samples.values().enumerate().for_each(|(i, value)| push(samples.time(i), value));
             push(samples.end(), 0.0);
         }
     }

@@ -141,7 +141,9 @@ impl Course {
                 let peak = pulse.peak().abs();
                 [peak, if pulse.shape == Shape::HalfSine { peak * PI / pulse.duration.get() } else { 0.0 }]
             }
-            Self::Record(_) | Self::Made(_) => self.samples().map_or([f64::NAN; 2], Samples::bounds),
+            Self::Record(_) | Self::Made(_) => {
+                self.samples().map_or([f64::NAN; 2], |samples| samples.bounds())
+            }
         }
     }
 
@@ -171,7 +173,7 @@ impl Course {
     }
 
     /// The samples of a course that has some.
-    pub fn samples(&self) -> Option<&'static Samples> {
+    pub fn samples(&self) -> Option<Samples> {
         match self {
             Self::Pulse(_) => None,
             Self::Record(record) => record.samples(),
@@ -205,7 +207,7 @@ impl Course {
     pub fn end(&self) -> f64 {
         match self {
             Self::Pulse(pulse) => pulse.duration.get(),
-            Self::Record(_) | Self::Made(_) => self.samples().map_or(f64::NAN, Samples::end),
+            Self::Record(_) | Self::Made(_) => self.samples().map_or(f64::NAN, |samples| samples.end()),
         }
     }
 }

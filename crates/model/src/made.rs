@@ -14,7 +14,7 @@ use std::sync::Mutex;
 #[derive(Clone, Copy, Debug)]
 pub struct Made {
     recipe: &'static Recipe,
-    samples: &'static Samples,
+    samples: Samples,
 }
 
 /// What gives the samples of a force.
@@ -147,7 +147,7 @@ impl Made {
     /// # Errors
     /// [`Unmade`].
     pub fn new(recipe: Recipe) -> Result<Self, Unmade> {
-        let samples = Samples::keep(recipe.samples()?);
+        let samples = recipe.samples()?;
         Ok(Self { recipe: kept(&RECIPES, recipe), samples })
     }
 
@@ -157,7 +157,7 @@ impl Made {
     }
 
     /// Its samples, SI units.
-    pub fn samples(&self) -> &'static Samples {
+    pub fn samples(&self) -> Samples {
         self.samples
     }
 

@@ -7,11 +7,12 @@ use std::sync::{Mutex, PoisonError};
 
 /// A record that a study names, and its samples once they are read.
 ///
-/// Scenes are plain numbers that are copied freely. So what a record says is kept once, until the program ends, however often it is read.
+/// Scenes are plain numbers that are copied freely. So what a record says is kept once, until the program ends, however often it is read, and
+/// with whatever factor.
 #[derive(Clone, Copy, Debug)]
 pub struct Record {
     source: &'static RecordFile,
-    samples: Option<&'static Samples>,
+    samples: Option<Samples>,
     /// Whether a study is written with the samples and not with the name of the file.
     whole: bool,
 }
@@ -39,12 +40,21 @@ pub enum Column {
     Name(String),
 }
 
-/// Samples in SI units.
-#[derive(Debug, PartialEq)]
+/// Samples in SI units: of a table, every one or every so many, times a factor. So a record that is scaled, of the other sign, or of another
+/// sample rate takes no memory of its own.
+#[derive(Clone, Copy, Debug)]
 pub struct Samples {
+    table: &'static Table,
+    factor: f64,
+    every: usize,
+    bounds: [f64; 2],
+}
+
+/// What samples are of.
+#[derive(Debug, PartialEq)]
+struct Table {
     times: Times,
     values: Vec<f64>,
-    bounds: [f64; 2],
 }
 
 /// The times of samples, s.
@@ -76,7 +86,7 @@ pub enum BadSamples {
 const EVEN: f64 = 1e-9;
 
 static FILES: Mutex<Vec<&'static RecordFile>> = Mutex::new(Vec::new());
-static SAMPLES: Mutex<Vec<&'static Samples>> = Mutex::new(Vec::new());
+static TABLES: Mutex<Vec<&'static Table>> = Mutex::new(Vec::new());
 
 /// The one that is kept and equal to `new`.
 pub(crate) fn kept<T: PartialEq>(all: &Mutex<Vec<&'static T>>, new: T) -> &'static T {
@@ -99,7 +109,7 @@ impl Record {
     /// The same with its samples, in SI units.
     #[must_use]
     pub fn with(self, samples: Samples) -> Self {
-        Self { samples: Some(samples.keep()), ..self }
+        Self { samples: Some(samples), ..self }
     }
 
     /// The same, to be written with its samples, so that a study needs no other file.
@@ -119,29 +129,27 @@ impl Record {
     }
 
     /// Its samples; none before they are read.
-    pub fn samples(&self) -> Option<&'static Samples> {
+    pub fn samples(&self) -> Option<Samples> {
         self.samples
     }
 }
 
 impl PartialEq for Record {
     fn eq(&self, other: &Self) -> bool {
-        let same = |a: &'static Samples, b: &'static Samples| std::ptr::eq(a, b);
-        let samples = match (self.samples, other.samples) {
-            (Some(a), Some(b)) => same(a, b),
-            (None, None) => true,
-            _ => false,
-        };
-        samples && std::ptr::eq(self.source, other.source)
+        std::ptr::eq(self.source, other.source) && self.samples == other.samples
+    }
+}
+
+impl PartialEq for Samples {
+    fn eq(&self, other: &Self) -> bool {
+        let how = |of: &Self| (of.factor, of.every);
+        let same = std::ptr::eq(self.table, other.table) && how(self) == how(other);
+        let equal = |i: usize| self.time(i) == other.time(i) && self.value(i) == other.value(i);
+        same || (self.len() == other.len() && (0..self.len()).all(equal))
     }
 }
 
 impl Samples {
-    /// The same for as long as the program runs.
-    pub(crate) fn keep(self) -> &'static Self {
-        kept(&SAMPLES, self)
-    }
-
     /// Samples at these times, s.
     ///
     /// # Errors
@@ -185,62 +193,73 @@ impl Samples {
         if let Some(i) = values.iter().position(|value| !value.is_finite()) {
             return Err(BadSamples::NotFinite(i + 1, values[i]));
         }
-        let mut samples = Self { times, values, bounds: [0.0; 2] };
-        samples.bounds[0] = samples.values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-        samples.bounds[1] = (1..samples.len()).fold(0.0, |most: f64, i| most.max(samples.slope(i - 1).abs()));
-        Ok(samples)
+        let table = kept(&TABLES, Table { times, values });
+        Self { table, factor: 1.0, every: 1, bounds: [0.0; 2] }.checked()
+    }
+
+    /// The same with its bounds.
+    fn checked(mut self) -> Result<Self, BadSamples> {
+        let count = self.len();
+        if count < 2 {
+            return Err(BadSamples::Few(count));
+        }
+        if let Some(i) = (0..count).find(|&i| !self.value(i).is_finite()) {
+            return Err(BadSamples::NotFinite(i + 1, self.value(i)));
+        }
+        self.bounds[0] = self.values().fold(0.0, |most: f64, value| most.max(value.abs()));
+        self.bounds[1] = (1..count).fold(0.0, |most: f64, i| most.max(self.slope(i - 1).abs()));
+        Ok(self)
     }
 
     /// The same times a factor.
     ///
     /// # Errors
     /// [`BadSamples::NotFinite`].
-    pub fn times(&self, factor: f64) -> Result<Self, BadSamples> {
-        let times = match &self.times {
-            Times::Every(first, step) => Times::Every(*first, *step),
-            Times::At(times) => Times::At(times.clone()),
-        };
-        Self::new(times, self.values.iter().map(|value| factor * value).collect())
+    pub fn times(self, factor: f64) -> Result<Self, BadSamples> {
+        Self { factor: factor * self.factor, ..self }.checked()
     }
 
     /// Every second of them, from the first on.
     ///
     /// # Errors
     /// [`BadSamples::Few`].
-    pub fn every_second(&self) -> Result<Self, BadSamples> {
-        let values = self.values.iter().copied().step_by(2).collect();
-        let times = match &self.times {
-            Times::Every(first, step) => Times::Every(*first, 2.0 * step),
-            Times::At(times) => Times::At(times.iter().copied().step_by(2).collect()),
-        };
-        Self::new(times, values)
+    pub fn every_second(self) -> Result<Self, BadSamples> {
+        Self { every: 2 * self.every, ..self }.checked()
     }
 
     /// How many there are, at least two.
     pub fn len(&self) -> usize {
-        self.values.len()
+        self.table.values.len().div_ceil(self.every)
     }
 
     /// There are never none.
     pub fn is_empty(&self) -> bool {
-        self.values.is_empty()
+        self.table.values.is_empty()
     }
 
     /// The first time and the time between two, s, of equidistant samples.
     pub fn even(&self) -> Option<[f64; 2]> {
-        if let Times::Every(start, step) = self.times { Some([start, step]) } else { None }
+        let Times::Every(start, step) = self.table.times else { return None };
+        Some([start, self.every as f64 * step])
     }
 
-    /// The values, SI units.
-    pub fn values(&self) -> &[f64] {
-        &self.values
+    /// The value of a sample, SI units.
+    #[inline]
+    pub fn value(&self, i: usize) -> f64 {
+        self.factor * self.table.values[i * self.every]
+    }
+
+    /// All values.
+    pub fn values(&self) -> impl Iterator<Item = f64> {
+        let factor = self.factor;
+        self.table.values.iter().step_by(self.every).map(move |value| factor * value)
     }
 
     /// The time of a sample, s.
     pub fn time(&self, i: usize) -> f64 {
-        match &self.times {
-            Times::Every(first, step) => first + i as f64 * step,
-            Times::At(times) => times[i],
+        match &self.table.times {
+            Times::Every(first, step) => first + i as f64 * (self.every as f64 * step),
+            Times::At(times) => times[i * self.every],
         }
     }
 
@@ -256,15 +275,16 @@ impl Samples {
 
     /// The slope after a sample that is not the last.
     fn slope(&self, i: usize) -> f64 {
-        (self.values[i + 1] - self.values[i]) / (self.time(i + 1) - self.time(i))
+        (self.value(i + 1) - self.value(i)) / (self.time(i + 1) - self.time(i))
     }
 
     /// The last sample not after `t`; none before the first.
     fn last_before(&self, t: f64) -> Option<usize> {
-        let found = match &self.times {
-            Times::At(times) => times.partition_point(|time| *time <= t),
+        let found = match &self.table.times {
+            Times::At(times) => times.partition_point(|time| *time <= t).div_ceil(self.every),
             Times::Every(first, step) => {
-                let guess = (((t - first) / step).max(0.0) as usize).min(self.len() - 1);
+                let guess =
+                    (((t - first) / (self.every as f64 * step)).max(0.0) as usize).min(self.len() - 1);
                 // Rounding may be one off.
                 let from = guess.saturating_sub(1);
                 from + (from..self.len().min(guess + 2)).take_while(|&i| self.time(i) <= t).count()
@@ -281,7 +301,7 @@ impl Samples {
                 Stretch { from: self.end(), to: f64::INFINITY, begin: [0.0; 2] }
             }
             Some(i) => {
-                Stretch { from: self.time(i), to: self.time(i + 1), begin: [self.values[i], -self.slope(i)] }
+                Stretch { from: self.time(i), to: self.time(i + 1), begin: [self.value(i), -self.slope(i)] }
             }
         }
     }
@@ -292,15 +312,15 @@ impl Samples {
 pub struct EvenForce {
     /// The first time and the time between two, s.
     pub even: [f64; 2],
-    values: &'static [f64],
+    samples: Samples,
     /// The force of a value of 1, N.
     unit: f64,
 }
 
 impl EvenForce {
     /// The force of some samples; none if they are not equidistant.
-    pub(crate) fn new(samples: &'static Samples, unit: f64) -> Option<Self> {
-        Some(Self { even: samples.even()?, values: samples.values(), unit })
+    pub(crate) fn new(samples: Samples, unit: f64) -> Option<Self> {
+        Some(Self { even: samples.even()?, samples, unit })
     }
 
     /// The time of a sample, s.
@@ -318,74 +338,11 @@ impl EvenForce {
 
     /// So many forces from a sample on, N, if there are as many.
     pub fn forces<const K: usize>(&self, from: usize) -> Option<[f64; K]> {
-        let values = self.values.get(from..from + K)?;
-        Some(std::array::from_fn(|i| self.unit * values[i]))
+        let Samples { table, factor, every, .. } = self.samples;
+        let values = table.values.get(from * every..=(from + K - 1) * every)?;
+        Some(std::array::from_fn(|i| self.unit * (factor * values[i * every])))
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn exact_a_record_is_linear_between_its_samples_and_nothing_outside() {
-        for times in [vec![0.5, 0.75, 1.0, 1.25], vec![0.5, 0.8, 1.0, 1.25]] {
-            let samples = Samples::at(times.clone(), vec![1.0, -2.0, 4.0, 3.0]).expect("a record");
-            let is_even = matches!(samples.times, Times::Every(..));
-            assert_eq!(is_even, times[1] == 0.75);
-            assert_eq!(samples.stretch(0.2), Stretch { from: 0.0, to: 0.5, begin: [0.0; 2] });
-            assert_eq!(samples.stretch(1.25).begin, [0.0; 2]);
-            assert_eq!(samples.stretch(1.25).to, f64::INFINITY);
-            for (i, t) in times.iter().take(3).enumerate() {
-                let slope = (samples.values[i + 1] - samples.values[i]) / (times[i + 1] - t);
-                let expected = Stretch { from: *t, to: times[i + 1], begin: [samples.values[i], -slope] };
-                assert_eq!(samples.stretch(*t), expected);
-                assert_eq!(samples.stretch(0.5 * (t + times[i + 1])), expected);
-            }
-            assert_eq!(samples.bounds()[0], 4.0);
-        }
-    }
-
-    /// The time of every sample finds that sample, whatever rounding does to the division by the distance.
-    #[test]
-    fn exact_the_time_of_a_sample_begins_its_stretch() {
-        let count = 4001;
-        let samples = Samples::every(0.0, 0.01, (0..count).map(f64::from).collect()).expect("a record");
-        for i in 0..count as usize - 1 {
-            let stretch = samples.stretch(samples.time(i));
-            assert_eq!([stretch.from, stretch.to], [samples.time(i), samples.time(i + 1)]);
-            assert_eq!(samples.stretch(stretch.to.next_down()).from, stretch.from);
-        }
-    }
-
-    #[test]
-    fn contract_what_is_no_record_says_why() {
-        let refused = |times: &[f64], values: &[f64]| {
-            Samples::at(times.to_vec(), values.to_vec()).expect_err("no record").to_string()
-        };
-        assert_eq!(refused(&[], &[]), "it has 0 samples: give at least two");
-        assert_eq!(refused(&[0.0], &[1.0]), "it has 1 samples: give at least two");
-        assert!(refused(&[0.0, 1.0], &[1.0, f64::NAN]).starts_with("sample 2: NaN is not allowed"));
-        assert!(refused(&[0.0, f64::INFINITY], &[1.0, 1.0]).starts_with("sample 2: inf is not allowed"));
-        assert!(refused(&[-1.0, 1.0], &[1.0, 1.0]).starts_with("sample 1: the time -1 s"));
-        assert!(refused(&[0.0, 1.0, 1.0], &[1.0, 1.0, 1.0]).starts_with("sample 3: the time 1 s does not"));
-        assert!(Samples::every(0.0, 0.0, vec![1.0, 1.0]).is_err());
-        assert!(Samples::every(0.0, 0.1, vec![]).is_err());
-    }
-
-    #[test]
-    fn contract_what_is_read_again_is_kept_once() {
-        let file = |column| RecordFile {
-            file: "a.csv".to_owned(),
-            column,
-            unit: None,
-            scale: Finite::new(2.0).ok(),
-        };
-        let read =
-            || Record::new(file(None)).with(Samples::every(0.0, 0.1, vec![1.0, 2.0]).expect("a record"));
-        assert_eq!(read(), read());
-        assert!(std::ptr::eq(read().samples().expect("read"), read().samples().expect("read")));
-        assert_ne!(read(), Record::new(file(None)));
-        assert_ne!(Record::new(file(Some(Column::Number(1)))), Record::new(file(None)));
-    }
-}
+mod tests;

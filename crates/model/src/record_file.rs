@@ -67,8 +67,8 @@ impl From<&Record> for InFile {
 }
 
 impl Whole {
-    fn new(RecordFile { file, column, unit, scale }: RecordFile, samples: &Samples) -> Self {
-        let values = samples.values().to_vec();
+    fn new(RecordFile { file, column, unit, scale }: RecordFile, samples: Samples) -> Self {
+        let values = samples.values().collect();
         let (start, step, times) = match samples.even() {
             Some([start, step]) => (
                 NonNegative::new(start).ok().filter(|start| start.get() > 0.0),

@@ -132,9 +132,9 @@ fn csv(of: Of, source: &RecordFile, mut file: impl Read + Seek) -> Result<Sample
             field.parse::<f64>().map_err(|_| format!("line {line}: \"{field}\" is not a number"))
         };
         times.push(at(0)?);
-        values.push(factor * at(place)?);
+        values.push(at(place)?);
     }
-    Samples::at(times, values).map_err(|bad| bad.to_string())
+    Samples::at(times, values).and_then(|samples| samples.times(factor)).map_err(|bad| bad.to_string())
 }
 
 /// What separates the columns of a file, by its first line; the file is then at its beginning again.
@@ -190,13 +190,13 @@ fn at2(of: Of, source: &RecordFile, mut lines: Lines<impl Read>) -> Result<Sampl
         let Some(line) = lines.next()? else { break };
         for field in line.split_whitespace() {
             let value: Result<f64, _> = field.parse();
-            values.push(factor * value.map_err(|_| format!("line {number}: \"{field}\" is not a number"))?);
+            values.push(value.map_err(|_| format!("line {number}: \"{field}\" is not a number"))?);
         }
     }
     if values.len() != count {
         return Err(format!("has {} values, but says NPTS = {count}", values.len()));
     }
-    Samples::every(0.0, step, values).map_err(|bad| bad.to_string())
+    Samples::every(0.0, step, values).and_then(|samples| samples.times(factor)).map_err(|bad| bad.to_string())
 }
 
 /// Number and distance of the samples, s: `NPTS= 4000, DT= .0050 SEC`, or as older files have it `4000 .0050 NPTS, DT`.
@@ -230,7 +230,11 @@ mod tests {
         serde_json::from_value(serde_json::json!({ "primary": primary, "forcing": record })).expect("a scene")
     }
 
-    fn samples(name: &str, text: &str, more: serde_json::Value) -> Result<&'static Samples, String> {
+    fn values(samples: Samples) -> Vec<f64> {
+        samples.values().collect()
+    }
+
+    fn samples(name: &str, text: &str, more: serde_json::Value) -> Result<Samples, String> {
         let path = file(name, text);
         let mut forcing = serde_json::json!({ "record": name, "of": "base acceleration" });
         forcing.as_object_mut().expect("an object").extend(more.as_object().expect("an object").clone());
@@ -245,18 +249,18 @@ mod tests {
     fn exact_records_are_read_in_si_units() {
         let none = serde_json::json!({});
         let found = samples("si.csv", "t,a,b\n0,1,4\n0.5,-2,5\n2,3,6\n", none.clone()).expect("a record");
-        assert_eq!((found.values(), found.time(1), found.end()), (&[1.0, -2.0, 3.0][..], 0.5, 2.0));
+        assert_eq!((values(found), found.time(1), found.end()), (vec![1.0, -2.0, 3.0], 0.5, 2.0));
         let more = serde_json::json!({ "column": "b", "unit": "g", "scale": -2.0 });
         let found = samples("b.csv", "\u{feff}t;a;\"b\"\n\n0;1;4\n0.1;2;5\n", more).expect("a record");
-        assert_eq!(found.values(), [-2.0 * 9.80665 * 4.0, -2.0 * 9.80665 * 5.0]);
+        assert_eq!(values(found), [-2.0 * 9.80665 * 4.0, -2.0 * 9.80665 * 5.0]);
         let found = samples("c.csv", "t,a,b\n0,1,4\n0.1,2,5\n", serde_json::json!({ "column": 3 }));
-        assert_eq!(found.expect("a record").values(), [4.0, 5.0]);
+        assert_eq!(values(found.expect("a record")), [4.0, 5.0]);
         for head in ["NPTS=   5, DT=   .0050 SEC", "   5   .0050   NPTS, DT"] {
             let text =
                 format!("PEER\nA QUAKE 2\nACCELERATION IN UNITS OF G\n{head}\n .1E-01 -.2E-01\n 0 1 2\n");
             let found = samples("d.AT2", &text, none.clone()).expect("a record");
             assert_eq!(found.even(), Some([0.0, 0.005]));
-            assert_eq!(found.values()[1], 9.80665 * -0.02);
+            assert_eq!(found.value(1), 9.80665 * -0.02);
         }
         // Seconds that were rounded to decimals are equidistant all the same.
         let text: String = (0..500).map(|i| format!("{:.3},{i}\n", 0.005 * f64::from(i))).collect();

@@ -2,7 +2,7 @@
 
 use crate::format::Span;
 use crate::{Rule, records};
-use retune_model::{Course, NonNegative, Positive, Samples, Scene};
+use retune_model::{Course, NonNegative, Positive, Scene};
 use serde::Deserialize;
 use serde_json::Value;
 use std::f64::consts::TAU;
@@ -71,7 +71,8 @@ impl crate::Study {
     /// A sentence on the transient that maxima in the window hold, if its share matters.
     pub fn transient(&self) -> Option<String> {
         if let Some(Course::Record(record)) = self.scene.forcing.history().map(|history| history.course)
-            && let Some(end) = record.samples().map(Samples::end).filter(|end| *end < self.window.end.get())
+            && let Some(end) =
+                record.samples().map(|samples| samples.end()).filter(|end| *end < self.window.end.get())
         {
             let to = self.window.end.get();
             return Some(format!("the record ends at {end} s; from there to T = {to} s the motion is free"));

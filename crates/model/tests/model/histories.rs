@@ -40,7 +40,7 @@ fn exact_the_force_of_every_history() {
     close(at(pulse(Of::BaseAcceleration, Shape::Rectangle, 5.0, 0.8), 0.3), -5.0 * SSVI.m1);
     let samples = Samples::at(vec![0.5, 1.0, 2.0], vec![1.0, 3.0, -1.0]).expect("a record");
     for (t, value) in [(0.25, 0.0), (0.75, 2.0), (1.5, 1.0), (2.5, 0.0)] {
-        let samples = Samples::at((0..3).map(|i| samples.time(i)).collect(), samples.values().to_vec());
+        let samples = Samples::at((0..3).map(|i| samples.time(i)).collect(), samples.values().collect());
         close(at(record(Of::Force, samples.expect("a record")), t), value);
     }
 }

@@ -1,0 +1,90 @@
+//! Samples, and what is made of them.
+
+use super::*;
+
+#[test]
+fn exact_a_record_is_linear_between_its_samples_and_nothing_outside() {
+    for times in [vec![0.5, 0.75, 1.0, 1.25], vec![0.5, 0.8, 1.0, 1.25]] {
+        let samples = Samples::at(times.clone(), vec![1.0, -2.0, 4.0, 3.0]).expect("a record");
+        let is_even = matches!(samples.table.times, Times::Every(..));
+        assert_eq!(is_even, times[1] == 0.75);
+        assert_eq!(samples.stretch(0.2), Stretch { from: 0.0, to: 0.5, begin: [0.0; 2] });
+        assert_eq!(samples.stretch(1.25).begin, [0.0; 2]);
+        assert_eq!(samples.stretch(1.25).to, f64::INFINITY);
+        for (i, t) in times.iter().take(3).enumerate() {
+            let slope = (samples.value(i + 1) - samples.value(i)) / (times[i + 1] - t);
+            let expected = Stretch { from: *t, to: times[i + 1], begin: [samples.value(i), -slope] };
+            assert_eq!(samples.stretch(*t), expected);
+            assert_eq!(samples.stretch(0.5 * (t + times[i + 1])), expected);
+        }
+        assert_eq!(samples.bounds()[0], 4.0);
+    }
+}
+
+/// The time of every sample finds that sample, whatever rounding does to the division by the distance.
+#[test]
+fn exact_the_time_of_a_sample_begins_its_stretch() {
+    let count = 4001;
+    let samples = Samples::every(0.0, 0.01, (0..count).map(f64::from).collect()).expect("a record");
+    for i in 0..count as usize - 1 {
+        let stretch = samples.stretch(samples.time(i));
+        assert_eq!([stretch.from, stretch.to], [samples.time(i), samples.time(i + 1)]);
+        assert_eq!(samples.stretch(stretch.to.next_down()).from, stretch.from);
+    }
+}
+
+/// Scaled, of the other sign and of half the samples it is one table, and the same as samples of their own.
+#[test]
+fn exact_scaled_and_coarser_samples_are_views_of_one_table() {
+    let own = |times: &[f64], values: &[f64]| Samples::at(times.to_vec(), values.to_vec()).expect("a record");
+    for times in [[0.5, 0.75, 1.0, 1.25, 1.5], [0.5, 0.8, 1.0, 1.25, 1.5]] {
+        let samples = own(&times, &[1.0, -2.0, 4.0, 3.0, 7.0]);
+        let reversed = samples.times(-3.0).expect("a record");
+        assert!(std::ptr::eq(reversed.table, samples.table));
+        assert_eq!(reversed, own(&times, &[-3.0, 6.0, -12.0, -9.0, -21.0]));
+        assert_eq!(reversed.bounds(), [21.0, 3.0 * samples.bounds()[1]]);
+        let coarser = reversed.every_second().expect("a record");
+        let expected = own(&[times[0], times[2], times[4]], &[-3.0, -12.0, -21.0]);
+        assert!(std::ptr::eq(coarser.table, samples.table));
+        assert_eq!((coarser, coarser.bounds(), coarser.len()), (expected, expected.bounds(), 3));
+        for t in [0.0, 0.5, 0.6, 0.8, 1.0, 1.1, 1.5, 2.0] {
+            assert_eq!(coarser.stretch(t), expected.stretch(t), "{t}");
+        }
+        let force = |samples| EvenForce::new(samples, 2.0).map(|force| force.forces::<2>(1));
+        assert_eq!(force(coarser), times[1].eq(&0.75).then_some(Some([-24.0, -42.0])));
+        assert!(EvenForce::new(coarser, 1.0).is_none_or(|force| force.forces::<3>(1).is_none()));
+    }
+    let samples = own(&[0.0, 1.0, 2.0], &[1.0, 2.0, 3.0]);
+    assert_eq!(
+        samples.times(f64::INFINITY).expect_err("no number").to_string().split(':').next(),
+        Some("sample 1")
+    );
+    assert!(samples.every_second().and_then(Samples::every_second).is_err(), "one sample is none");
+}
+
+#[test]
+fn contract_what_is_no_record_says_why() {
+    let refused = |times: &[f64], values: &[f64]| {
+        Samples::at(times.to_vec(), values.to_vec()).expect_err("no record").to_string()
+    };
+    assert_eq!(refused(&[], &[]), "it has 0 samples: give at least two");
+    assert_eq!(refused(&[0.0], &[1.0]), "it has 1 samples: give at least two");
+    assert!(refused(&[0.0, 1.0], &[1.0, f64::NAN]).starts_with("sample 2: NaN is not allowed"));
+    assert!(refused(&[0.0, f64::INFINITY], &[1.0, 1.0]).starts_with("sample 2: inf is not allowed"));
+    assert!(refused(&[-1.0, 1.0], &[1.0, 1.0]).starts_with("sample 1: the time -1 s"));
+    assert!(refused(&[0.0, 1.0, 1.0], &[1.0, 1.0, 1.0]).starts_with("sample 3: the time 1 s does not"));
+    assert!(Samples::every(0.0, 0.0, vec![1.0, 1.0]).is_err());
+    assert!(Samples::every(0.0, 0.1, vec![]).is_err());
+}
+
+#[test]
+fn contract_what_is_read_again_is_kept_once() {
+    let file =
+        |column| RecordFile { file: "a.csv".to_owned(), column, unit: None, scale: Finite::new(2.0).ok() };
+    let read = || Record::new(file(None)).with(Samples::every(0.0, 0.1, vec![1.0, 2.0]).expect("a record"));
+    assert_eq!(read(), read());
+    let table = || read().samples().expect("read").table;
+    assert!(std::ptr::eq(table(), table()));
+    assert_ne!(read(), Record::new(file(None)));
+    assert_ne!(Record::new(file(Some(Column::Number(1)))), Record::new(file(None)));
+}
