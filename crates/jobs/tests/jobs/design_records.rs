@@ -43,6 +43,14 @@ fn reference_the_tmd_of_a_record_is_the_best_of_runs_by_another_method() {
         let found = desk.read_json("out/design.json");
         let tmd = &found["candidates"][1];
         let own = tmd["in_window"][goal]["value"].as_f64().expect("a number");
+        // Drawn to scale is the largest motion of the whole run.
+        let page = std::fs::read_to_string(desk.path("out/report.html")).expect("a page");
+        let drawn = page.split("the structure moves by ± ").nth(1).and_then(|rest| rest.split(' ').next());
+        let drawn: f64 = drawn.expect("a drawing").parse().expect("a number");
+        let [whole, window] = ["from_rest", "in_window"]
+            .map(|run| 1e3 * tmd[run]["x1max"]["value"].as_f64().expect("a number"));
+        assert!((drawn / whole - 1.0).abs() < 1e-3, "{drawn} {whole}");
+        assert!(after == "0 s" || whole > 1.01 * window, "{whole} {window}");
         let mut study = good(requirements.tmd());
         assert_eq!(
             (study.window.t0.get(), study.window.end.get()),
