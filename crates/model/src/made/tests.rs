@@ -61,7 +61,7 @@ fn exact_straight_lines_stay_near_a_formula_and_keep_its_impulse() {
                 assert!((linear - impulse).abs() < allowed, "{i}: {linear} {impulse} {allowed}");
                 for k in 0..8 {
                     let t = from + k as f64 / 8.0 * h;
-                    largest = largest.max((at(samples, t) - force(t)).abs());
+                    largest = largest.max((at(&samples, t) - force(t)).abs());
                 }
             }
             assert!(largest <= error && largest > 0.2 * error, "{largest} of {error}");

@@ -95,7 +95,7 @@ fn exact_a_record_on_a_structure_without_a_damper() {
         for i in 0..samples.len() {
             let last = i + 1 == samples.len();
             let h = if last { 2.0 } else { samples.time(i + 1) - samples.time(i) };
-            let value = |i: usize| unit * samples.values()[i];
+            let value = |i: usize| unit * samples.value(i);
             let force = if last { [0.0; 2] } else { [value(i), (value(i + 1) - value(i)) / h] };
             for k in 0..=400 {
                 let t = f64::from(k) / 400.0 * h;
