@@ -3,10 +3,15 @@
 use retune_lab::reference::Reference;
 use retune_lab::runs::{errors, external, run, settings};
 use retune_lab::savings::savings;
-use retune_lab::scenes::cases;
+use retune_lab::scenes::{Case, cases};
 use retune_lab::statistics;
 use retune_solver::{Contacts, Method, Settings};
 use std::path::Path;
+
+/// How much farther neighbours part in a scene than in most: with a restitution by a factor of e^(0.35 20) = 1100 over the run, ten times as far.
+fn grown(case: &Case) -> f64 {
+    if case.name == "restitution" { 10.0 } else { 1.0 }
+}
 
 /// DOP853 with located contacts gives the same motion, and every run ends within the predictable horizon.
 #[test]
@@ -14,9 +19,8 @@ fn reference_of_every_scene_is_confirmed_and_predictable() {
     for case in cases() {
         let reference = Reference::of(&case).expect("runs");
         let [e1, state, times] = reference.uncertainty;
-        // With a restitution neighbours part by a factor of e^(0.35 20) = 1100 over the run, ten times as far as in any other scene; on a stiff
-        // dashpot DOP853 takes steps at the edge of its stability.
-        let grown = if ["restitution", "stiff-dashpot"].contains(&case.name) { 10.0 } else { 1.0 };
+        // On a stiff dashpot DOP853 takes steps at the edge of its stability.
+        let grown = if case.name == "stiff-dashpot" { 10.0 } else { grown(&case) };
         let [e1, state, times] = [e1, state, times].map(|error| error / grown);
         assert!(e1 < 1e-11 && state < 1e-9 && times < 1e-10, "{}: {e1:e} {state:e} {times:e}", case.name);
         assert!(case.to < reference.horizon(), "{}", case.name);
@@ -30,7 +34,7 @@ fn reference_the_default_tolerance_suffices_for_a_certificate() {
         let reference = Reference::of(&case).expect("runs").found;
         let found = run(&case, &Settings::default(), false).expect("runs");
         let [e1, ..] = errors(&found, &reference, case.omega());
-        assert!(e1 < 1e-9, "{}: {e1:e}", case.name);
+        assert!(e1 < 1e-9 * grown(&case), "{}: {e1:e}", case.name);
         assert_eq!(found.impacts, reference.impacts, "{}", case.name);
     }
 }
