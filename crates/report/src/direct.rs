@@ -138,11 +138,6 @@ fn along([from, to]: [(f64, f64); 2]) -> impl Iterator<Item = (f64, f64)> {
     (0..=steps as usize).map(at)
 }
 
-#[cfg(test)]
-fn inside([left, top, right, bottom]: Rect, (x, y): (f64, f64)) -> bool {
-    (left..=right).contains(&x) && (top..=bottom).contains(&y)
-}
-
 /// What passes each cell of a frame.
 struct Grid {
     frame: Rect,
@@ -290,6 +285,10 @@ mod tests {
         }
         let y = Axis::linear("amplification", (0.0, 11.0));
         (Chart::of(Axis::linear("ratio", (0.5, 1.5)), y, layers, 170.0), legend)
+    }
+
+    fn inside([left, top, right, bottom]: Rect, (x, y): (f64, f64)) -> bool {
+        (left..=right).contains(&x) && (top..=bottom).contains(&y)
     }
 
     fn meets(a: Rect, b: Rect) -> bool {

@@ -50,12 +50,11 @@ pub(super) fn rows(requirements: &Requirements, compared: &Comparison) -> Vec<Ve
         };
         std::iter::once(first).chain(compared.all().zip(alike(&values, measure.unit())).map(cell)).collect()
     };
-    // What a wall feels is a row only where a candidate strikes one, or a limit is on it.
-    let is_told = |measure: &Measure| {
-        let limited = requirements.allowed(Constraint::Of(Limit::Of(*measure))).is_finite();
-        limited || !measure.is_of_walls() || compared.all().any(|of| of.value(*measure) != 0.0)
-    };
-    let mut rows: Vec<Vec<String>> = Measure::ALL.into_iter().filter(is_told).map(row).collect();
+    let mut rows: Vec<Vec<String>> = Measure::ALL
+        .into_iter()
+        .filter(|measure| is_told(requirements, compared, *measure))
+        .map(row)
+        .collect();
     if let Some(error) = requirements.k1_error {
         for (place, sign) in ["-", "+"].into_iter().enumerate() {
             let first = format!("{}, k1 {sign}{}", compared.goal.name(), percent(error));
@@ -84,6 +83,12 @@ fn table(requirements: &Requirements, compared: &Comparison) -> String {
         cells.collect::<String>().trim_end().to_owned()
     };
     rows.iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// Whether a quantity is told: what a wall feels only where a candidate strikes one, or a limit is on it.
+pub(super) fn is_told(requirements: &Requirements, compared: &Comparison, measure: Measure) -> bool {
+    let felt = || compared.all().any(|of| of.value(measure) != 0.0);
+    !measure.is_of_walls() || requirements.is_limited(measure) || felt()
 }
 
 /// Which damper to build, and why.

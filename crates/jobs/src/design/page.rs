@@ -1,6 +1,6 @@
 //! The page of a design: the answer, all candidates over the band or in the run, the damper to scale, what was asked.
 
-use super::answer::{build, findings, rows};
+use super::answer::{build, findings, is_told, rows};
 use super::candidate::{Candidate, What};
 use super::comparison::Comparison;
 use super::motion;
@@ -28,7 +28,7 @@ pub(super) fn page(requirements: &Requirements, compared: &Comparison) -> Docume
             .map(str::to_owned)
             .collect();
     let rows: Vec<Vec<String>> = rows(requirements, compared);
-    let told = |measure: &Measure| !measure.is_of_walls() || compared.dampers().any(Candidate::strikes);
+    let told = |measure: &Measure| is_told(requirements, compared, *measure);
     let meant = |measure: Measure| format!("{} is {}", measure.name().replace('_', " "), measure.words());
     let meaning: Vec<String> = Measure::ALL.into_iter().filter(told).map(meant).collect();
     let damper = |of: &Candidate| {
@@ -116,9 +116,7 @@ fn over(requirements: &Requirements, compared: &Comparison) -> Section {
         let figure = Block::figure("motion.svg", motion::picture(compared, line), words);
         return ("motion", "The motion", vec![figure]);
     };
-    let limited = Measure::ALL
-        .into_iter()
-        .any(|measure| requirements.allowed(Constraint::Of(Limit::Of(measure))).is_finite());
+    let limited = Measure::ALL.into_iter().any(|measure| requirements.is_limited(measure));
     let grey = if limited { " Grey: what a limit forbids." } else { "" };
     let words = format!("Each quantity against frequency, once the motion is steady.{grey}");
     let figure = Block::figure("band.svg", curves(requirements, compared, band), words);

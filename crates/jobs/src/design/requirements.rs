@@ -131,6 +131,11 @@ impl Requirements {
         self.limits.set().map(Constraint::Of).chain(self.k2_max.map(|_| Constraint::K2)).collect()
     }
 
+    /// Whether a limit is on a quantity.
+    pub fn is_limited(&self, measure: Measure) -> bool {
+        self.limits.get(Limit::Of(measure)).is_some()
+    }
+
     /// The largest value that a limit allows, in its SI unit; NaN where there is no such limit.
     pub fn allowed(&self, constraint: Constraint) -> f64 {
         match constraint {

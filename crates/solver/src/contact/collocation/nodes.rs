@@ -1,4 +1,5 @@
-//! Numbers at the nodes of a rule, four side by side.
+//! Numbers at the nodes of a rule, four side by side; in products eight, where the processor can. Their tables begin at a line of its cache, since
+//! eight numbers that cross one are read twice.
 
 use crate::motion::polynomial::Polynomial;
 use wide::{f64x4, f64x8};
@@ -42,7 +43,7 @@ pub fn product<const N: usize, const M: usize>(columns: &[Nodes<M>; N], vector: 
     for (four, lanes) in numbers.as_chunks_mut().0.iter_mut().zip(vector) {
         *four = lanes.to_array();
     }
-    // Eight nodes side by side where the processor can, four more if there are.
+    // Eight nodes side by side, and the last four of an odd M. Each node's sum is the same, bit by bit.
     let (mut sum, mut other) = ([f64x8::ZERO; M], [f64x8::ZERO; M]);
     let (mut sum_last, mut other_last) = (f64x4::ZERO, f64x4::ZERO);
     for j in 0..N / 2 {
