@@ -12,7 +12,7 @@ use retune_testkit::hunt::{
 use std::path::Path;
 use std::process::ExitCode;
 
-const USAGE: &str = "hunt NAME [DRAWS]: largest, losses, histories, rigid, repeats, peaks, needs, robust (DRAWS or FIRST..LAST), branches, dampers, dashpots, walk (a share of its \
+const USAGE: &str = "hunt NAME [DRAWS]: largest, losses, held, histories, rigid, repeats, peaks, needs, robust (DRAWS or FIRST..LAST), branches, dampers, dashpots, walk (a share of its \
                      steps), scenes, settled, bands, kills";
 
 fn main() -> Any<ExitCode> {
@@ -44,6 +44,11 @@ fn main() -> Any<ExitCode> {
             let count = number(20_000)?.into();
             show(include_str!("../hunts/hunt.md"), largest::beside_everywhere(Scenes::Lossy, count));
             show("", largest::beside_dop853(Scenes::Lossy, count));
+        }
+        "held" => {
+            let count = number(3000)?.into();
+            show(include_str!("../hunts/hunt.md"), largest::beside_everywhere(Scenes::Held, count));
+            show("", largest::beside_dop853(Scenes::Held, count));
         }
         "histories" => {
             let count = number(10_000)?.into();

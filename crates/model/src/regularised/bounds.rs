@@ -55,6 +55,10 @@ struct Series<const K: usize> {
 struct Bounds<'a> {
     /// On the sizes of `[q, w, x1, v1]`.
     state: [f64; 4],
+    /// On that of `dw/dt`, where it is known better than by the sizes of the forces, which hold each other where a wall holds the damper.
+    rate: f64,
+    /// On the force, N.
+    force: f64,
     /// Of a restitution that is the same at every speed.
     stages: Option<Stages<'a>>,
 }
@@ -63,10 +67,11 @@ impl RegularisedContact {
     /// Bounds on the Taylor coefficients in `θ` anywhere on a piece of the contact of length `h` (s/√m), from the states at its
     /// ends; infinite if the piece is too long for the proof.
     ///
-    /// A box that holds both ends, and that no motion can leave within `h/2` of either, holds the piece (Picard and Lindelöf).
-    /// In the box each coefficient follows from those before it by the equations, with all terms taken as positive.
+    /// A box that holds both ends, and that no motion can leave within `h/2` of either, holds the piece (Picard and Lindelöf). A longer piece has
+    /// a box by the energy of the relative motion. In the box each coefficient follows from those before it by the equations, with all terms
+    /// taken as positive.
     pub fn growth(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Growth<ORDERS> {
-        let bounds = self.bounds_between(h, from, to);
+        let bounds = self.bounds_on(h, from, to);
         bounds.map_or([[f64::INFINITY; ORDERS]; 4], |bounds| self.series::<ORDERS, false>(bounds).growth)
     }
 
@@ -77,7 +82,7 @@ impl RegularisedContact {
         from: &RegularisedState,
         to: &RegularisedState,
     ) -> [Growth<ORDERS>; 2] {
-        let Some(bounds) = self.bounds_between(h, from, to) else {
+        let Some(bounds) = self.bounds_on(h, from, to) else {
             return [[[f64::INFINITY; ORDERS]; 4]; 2];
         };
         let Series { growth, a1, rate, .. } = self.series::<ORDERS, true>(bounds);
@@ -90,12 +95,8 @@ impl RegularisedContact {
     pub fn change(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Option<Change> {
         let ends: [f64; 4] = std::array::from_fn(|i| from[i].abs().max(to[i].abs()));
         let mut most = ends;
-        let (excitation, turn) = if self.is_linear() {
-            (self.primary[0] * self.force[0], self.primary[0] * self.force[1])
-        } else {
-            let excitation = self.primary[0] * self.cos[0].hypot(self.sin[0]);
-            (excitation, self.omega * excitation)
-        };
+        let excitation = self.primary[0] * self.most_force();
+        let turn = if self.is_linear() { self.primary[0] * self.force[1] } else { self.omega * excitation };
         for _ in 0..8 {
             let [q, w, x1, v1] = most;
             let (stretch, contact) = (q * q + self.stretch.abs(), q * q * q * self.most(w));
@@ -125,12 +126,22 @@ impl RegularisedContact {
         None
     }
 
+    fn bounds_on(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Option<Bounds<'_>> {
+        self.bounds_between(h, from, to).or_else(|| self.bounds_by_energy(h, from, to))
+    }
+
+    /// A bound on the force, N.
+    fn most_force(&self) -> f64 {
+        if self.is_linear() { self.force[0] } else { self.cos[0].hypot(self.sin[0]) }
+    }
+
     /// Bounds on a piece; `None` if it is too long for the proof.
     fn bounds_between(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Option<Bounds<'_>> {
         let ends: [f64; 4] = std::array::from_fn(|i| from[i].abs().max(to[i].abs()));
         let stages =
             self.restoring.as_deref().map(|law| Stages::of(law, [from, to].map(|y| self.stage(law, y))));
-        let mut bounds = Bounds { state: ends, stages };
+        let mut bounds = Bounds { state: ends, rate: f64::INFINITY, force: self.most_force(), stages };
+        let mut farther = [f64::INFINITY; 2];
         for _ in 0..8 {
             let series = self.series::<2, false>(bounds);
             let [x1, v1, _, w] = series.growth;
@@ -141,10 +152,72 @@ impl RegularisedContact {
             if staged && (0..4).all(|i| reach[i] <= bounds.state[i]) {
                 return Some(bounds);
             }
+            // Once they grow faster and faster there is no end.
+            let by = [0, 1].map(|i| reach[i] - bounds.state[i]);
+            if by[0] > farther[0] && by[1] > farther[1] {
+                break;
+            }
+            farther = by;
             for i in 0..4 {
                 bounds.state[i] = bounds.state[i].max(1.05 * reach[i]);
             }
             bounds.stages = bounds.stages.zip(reached).map(|(bounds, reached)| bounds.joined(&reached));
+        }
+        None
+    }
+
+    /// Bounds on a piece in which the damper swings against its spring and the wall, however far it swings; `None` if the structure moves too
+    /// much for the proof, or where one restitution holds at every speed.
+    ///
+    /// With `U` the energy of both springs over the effective mass, `a` the acceleration that the rest of the structure's forces give the
+    /// damper into the wall, and `a0` that at the start, `ε² = w² + 2 (U(z) - a0 z - least)` changes by `dε/dt <= |a - a0|`, since dashpot and losses only
+    /// take from it. `U` is convex, and no softer than the spring, so that at the start `ε² <= w² + (U' - a0)² / U''` with the least `U''` on the way to
+    /// where `U' = a0`; and later `|w| <= ε`, `|U' - a0| <= √U'' ε` with the greatest, and `z` is at most `(ε0 + ε) / √spring` from where it was.
+    fn bounds_by_energy(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Option<Bounds<'_>> {
+        if self.restoring.is_some() {
+            return None;
+        }
+        let [q0, w0, ..] = *from;
+        let (z0, spring, kappa) = (q0 * q0, self.spring[1], self.law[0] * self.hertz[1]);
+        let lost = |q: f64, w: f64| (self.dashpot[1] + self.hertz[1] * self.law[1] * q.powi(3)) * w;
+        let pushed = -(self.acceleration(from) + lost(q0, w0)); // U' - a0
+        let softest = |q: f64| spring + 1.5 * kappa * q;
+        let (here, halfway) = (softest(q0), softest(0.5 * q0));
+        let least = match pushed {
+            _ if pushed <= 0.0 => here,
+            _ if pushed <= 0.75 * z0 * halfway => halfway,
+            _ => spring,
+        };
+        let begin = (w0 * w0 + pushed * pushed / least).sqrt();
+        let deepest = z0 + (-pushed / here).max(0.0); // of where U' = a0
+        let force = self.most_force();
+        let turn = self.primary[0] * if self.is_linear() { self.force[1] } else { self.omega * force };
+        let ends: [f64; 4] = std::array::from_fn(|i| from[i].abs().max(to[i].abs()));
+        let mut state = ends;
+        for _ in 0..8 {
+            let [q, w, x1, v1] = state;
+            let seconds = h * q;
+            let push = self.hertz[0] * q.powi(3) * self.most(w)
+                + self.dashpot[0] * w
+                + self.spring[0] * (q * q + self.stretch.abs());
+            let a1 = self.primary[0] * force + self.primary[1] * v1 + self.primary[2] * x1 + push;
+            let change = seconds * (self.primary[1] * a1 + self.primary[2] * v1 + self.felt.abs() * turn);
+            let energy = begin + 0.5 * seconds * change;
+            let way = (seconds * energy).min((begin + energy) / spring.sqrt());
+            let reach = [
+                (z0 + way).sqrt().max(ends[0]),
+                energy.max(ends[1]),
+                ends[2] + 0.5 * seconds * v1,
+                ends[3] + 0.5 * seconds * a1,
+            ];
+            if (0..4).all(|i| reach[i] <= state[i]) {
+                let stiffest = softest(q.max(deepest.sqrt()));
+                let rate = stiffest.sqrt() * energy + change + lost(q, w);
+                return Some(Bounds { state, rate, force, stages: None });
+            }
+            for i in 0..4 {
+                state[i] = state[i].max(1.05 * reach[i]);
+            }
         }
         None
     }
@@ -159,7 +232,7 @@ impl RegularisedContact {
         };
         let [mut q, mut w, mut x1, mut v1] = [q0, w0, x0, v0].map(start);
         let is_linear = self.is_linear();
-        let mut excitation = start(if is_linear { self.force[0] } else { self.cos[0].hypot(self.sin[0]) });
+        let mut excitation = start(bounds.force);
         let (mut z, mut stretch, mut cube, mut force) = ([0.0; K], [0.0; K], [0.0; K], [0.0; K]);
         let (mut rate, mut a1) = ([0.0; K], [0.0; K]);
         let mut stages = bounds.stages.map(StageSeries::new);
@@ -182,6 +255,9 @@ impl RegularisedContact {
             let apart =
                 if self.felt == 0.0 { self.primary[1] * v1[k] + self.primary[2] * x1[k] } else { outside };
             (a1[k], rate[k]) = (outside + push(0), apart + push(1));
+            if k == 0 {
+                rate[0] = rate[0].min(bounds.rate);
+            }
             if k + 1 == K {
                 break;
             }

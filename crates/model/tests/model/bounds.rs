@@ -201,6 +201,79 @@ fn invariant_no_contact_leaves_its_bounds() {
     assert!(bounded > 100, "{bounded}");
 }
 
+/// Pieces on which a damper that is held swings by up to some radians, too far for Picard and Lindelöf.
+#[test]
+fn invariant_no_long_piece_of_a_held_contact_leaves_its_bounds() {
+    let mut spread = Spread::new(23);
+    let (mut bounded, mut tight) = (0, 0);
+    for draw in 0..30_000 {
+        let numbers = Numbers {
+            m2: spread.logarithmic(1.0, 1000.0),
+            k2: spread.logarithmic(1e3, 1e8),
+            c2: spread.logarithmic(1.0, 1e5),
+            p: spread.logarithmic(1.0, 1e4),
+            omega: spread.logarithmic(1.0, 30.0),
+            lambda: if draw % 2 == 0 { 0.0 } else { spread.logarithmic(0.01, 10.0) },
+            d: 0.0,
+            ..SSVI
+        };
+        let (system, side) = (numbers.coupled(), Side::Primary);
+        let mut equations = system.regularised_contact(side);
+        equations.set_excitation(0.0, system.excitation(T));
+        // About the place at which the wall would hold it, or far from there.
+        let (x1, v1) = (0.3 * spread.signed(), 2.0 * spread.signed());
+        let stiffness = numbers.k2 * lightness(&numbers)[1];
+        let q = (10.0 / (stiffness + equations.hertz_rate() * 0.01)).sqrt() * spread.logarithmic(0.1, 30.0);
+        let rate = (stiffness + 1.5 * equations.hertz_rate() * q).sqrt();
+        let from = [q, rate * q * q * spread.signed() * spread.logarithmic(1e-6, 0.5), x1, v1, 0.0];
+        if equations.push(from[1]) <= 0.0 {
+            continue;
+        }
+        let turns = spread.logarithmic(0.1, 4.0);
+        let h = turns / rate / q;
+        let mut states = vec![from];
+        for _ in 0..300 {
+            let next = advance(&equations, states.last().expect("the first"), h / 300.0);
+            states.push(next);
+        }
+        // A piece ends where the damper leaves the wall, or the force ends.
+        if states.iter().any(|y| y[0] < 0.0 || equations.push(y[1]) < 0.0) {
+            continue;
+        }
+        let [bounds, rates] = equations.growth_of_rates(h, &from, states.last().expect("the first"));
+        if !bounds[0][0].is_finite() {
+            continue;
+        }
+        bounded += u32::from(turns > 2.0);
+        let beyond = side.sign() * (system.wall(side) - numbers.d);
+        let mut fastest: f64 = 0.0;
+        for pair in states.windows(2) {
+            let [now, next] = [0, 1].map(|i| equations.derivative(&pair[i]));
+            let [q, w, x1, v1, _] = pair[0];
+            let acceleration = equations.acceleration(&pair[0]);
+            let slope = |i: usize| 0.5 * (next[i] - now[i]) / (h / 300.0);
+            let values = [
+                [x1, now[2], slope(2)],
+                [v1, now[3], slope(3)],
+                [q * q + beyond, q * w, 0.5 * (next[0] * 2.0 * pair[1][0] - q * w) / (h / 300.0)],
+                [w, now[1], slope(1)],
+            ];
+            for (value, bound) in values.iter().zip(&bounds) {
+                for (value, bound) in value.iter().zip(bound) {
+                    assert!(
+                        value.abs() <= bound * (1.0 + 1e-6) + 1e-12,
+                        "{value} {bound} {numbers:?} {from:?} {h}"
+                    );
+                }
+            }
+            assert!(acceleration.abs() <= rates[3][0] * (1.0 + 1e-9), "{acceleration} {rates:?} {numbers:?}");
+            fastest = fastest.max(w.abs());
+        }
+        tight += u32::from(turns > 2.0 && bounds[3][0] < 3.0 * fastest);
+    }
+    assert!(bounded > 100 && tight > 50, "{bounded} {tight}");
+}
+
 /// A force too strong for the argument is told, and so is one that is no number.
 #[test]
 fn contract_no_bound_is_given_where_none_is_proven() {

@@ -19,10 +19,7 @@ impl Hybrid<'_> {
         to: f64,
         observer: &mut impl Observer<4>,
     ) -> Result<End, SolverError> {
-        // Walls give back at most what they hold.
-        let energy = (2.0 * self.system.total_energy(&from.y)).sqrt()
-            + (to - from.t) * self.system.energy_norm_growth();
-        let limits = (self.rtol, self.budget, energy);
+        let limits = (self.system, self.rtol, self.budget);
         integrate(equations, from, regularised, to, limits, &mut self.work, observer)
     }
 

@@ -67,6 +67,11 @@ pub fn in_theta([value, slope, curvature]: [f64; 3], [rate, rate_slope]: [f64; 2
 /// A place in a segment: `θ`, the moment, and `[value, slope, curvature]` there.
 pub type Place<const N: usize> = (f64, Knot<N>, [f64; 3]);
 
+/// Whether most of the room above the values at both ends is that of the remainder, of which a bound contains some three.
+fn says_little<const N: usize>(remainder: f64, highest: f64, a: &Place<N>, b: &Place<N>) -> bool {
+    remainder >= 0.125 * (highest - a.2[0].min(b.2[0]))
+}
+
 impl<Q> Search<Q> {
     /// Keeps a value if it is the largest so far.
     #[inline]
@@ -101,12 +106,16 @@ impl<Q> Search<Q> {
         Q: Quantity<N>,
     {
         let coefficients = quintic(b.0 - a.0, a.2.map(f64x4::splat), b.2.map(f64x4::splat));
-        let highest = if remainder.is_finite() {
+        let mut highest = if remainder.is_finite() {
             highest(coefficients, f64x4::splat(remainder)).to_array()[0]
         } else {
-            let (form, slopes) = (self.quantity.form(), [a.2[1], b.2[1]]);
-            a.2[0].max(b.2[0]) + segment.rise(form, [&a.1, &b.1], slopes, b.0 - a.0)
+            f64::INFINITY
         };
+        if says_little(remainder, highest, a, b) {
+            let (form, slopes) = (self.quantity.form(), [a.2[1], b.2[1]]);
+            let ends = a.2[0].max(b.2[0]);
+            highest = highest.min(ends + segment.rise(form, [&a.1, &b.1], slopes, b.0 - a.0));
+        }
         // A bound that is NaN drops nothing.
         if highest <= self.record.value {
             return;
@@ -118,8 +127,8 @@ impl<Q> Search<Q> {
         }
     }
 
-    /// Searches both halves of a stretch on which no value exceeds `highest`. A half has a 64th of the remainder; a long search, or
-    /// one without a finite bound, asks for a sharper one first.
+    /// Searches both halves of a stretch on which no value exceeds `highest`. A half has a 64th of the remainder; a long search asks for
+    /// a sharper one first.
     fn halve<const N: usize>(
         &mut self,
         segment: &impl Segment<N>,
@@ -143,7 +152,8 @@ impl<Q> Search<Q> {
                 }
                 return;
             }
-            if !self.sharp || remainder.is_infinite() {
+            // As often as that of this stretch says little.
+            if !self.sharp || says_little(remainder, highest, a, b) {
                 self.sharp = true;
                 let sharper = self.quintic_error(segment, a, b, true);
                 if sharper < remainder {

@@ -18,6 +18,11 @@ fn invariant_nor_where_contacts_lose_energy() {
 }
 
 #[test]
+fn invariant_no_largest_value_is_missed_where_a_stiff_spring_holds_the_damper() {
+    beside_everywhere(Scenes::Held, 40).passes();
+}
+
+#[test]
 fn invariant_nor_under_pulses_and_records() {
     beside_everywhere(Scenes::Histories, 150).passes();
 }

@@ -62,6 +62,21 @@ fn lossy(draw: &mut Spread) -> Numbers {
     Numbers { e, e_obstacle: (draw.unit() < 0.5).then_some(other), ..numbers }
 }
 
+/// A damper that its spring, up to 3000 times as stiff as an engineer's, holds to a wall for half of each period; one in three with λ.
+fn held(draw: &mut Spread) -> Numbers {
+    let numbers = Numbers {
+        k2: draw.logarithmic(1e3, 1e7),
+        c2: draw.logarithmic(0.1, 1e3),
+        d: if draw.unit() < 0.7 { 0.0 } else { draw.logarithmic(1e-6, 1e-2) },
+        ..anywhere(draw)
+    };
+    if draw.unit() < 1.0 / 3.0 {
+        Numbers { lambda: draw.logarithmic(1e-3, 100.0), ..numbers }
+    } else {
+        numbers
+    }
+}
+
 /// Any scene under a pulse or a record, one in five with contacts that lose energy.
 fn under_history(draw: &mut Spread) -> Scene {
     let numbers = if draw.unit() < 0.2 { lossy(draw) } else { anywhere(draw) };
@@ -74,6 +89,7 @@ type Draw = fn(&mut Spread) -> Scene;
 const ANYWHERE: Draw = |draw| anywhere(draw).scene();
 const DENSE: Draw = |draw| dense(draw).scene();
 const LOSSY: Draw = |draw| lossy(draw).scene();
+const HELD: Draw = |draw| held(draw).scene();
 
 /// What scenes are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,6 +100,8 @@ pub enum Scenes {
     TwoMaxima,
     /// Any, with contacts that lose energy.
     Lossy,
+    /// Dampers that a stiff spring holds to a wall.
+    Held,
     /// Any, under a pulse or a record.
     Histories,
 }
@@ -294,6 +312,7 @@ pub fn beside_everywhere(scenes: Scenes, count: u64) -> Hunt {
         Scenes::Any => ("search beside a look everywhere, any scene", ANYWHERE),
         Scenes::TwoMaxima => ("the same where two maxima in a step are common", DENSE),
         Scenes::Lossy => ("the same where contacts lose energy", LOSSY),
+        Scenes::Held => ("the same where a stiff spring holds the damper to a wall", HELD),
         Scenes::Histories => ("the same under pulses and records", under_history),
     };
     let looked: Vec<_> = (0..count)
@@ -336,6 +355,7 @@ pub fn beside_dop853(scenes: Scenes, count: u64) -> Hunt {
         Scenes::Any => ("hybrid beside DOP853", |number| if number % 3 == 0 { DENSE } else { ANYWHERE }),
         Scenes::TwoMaxima => ("the same where two maxima in a step are common", |_| DENSE),
         Scenes::Lossy => ("the same where contacts lose energy", |_| LOSSY),
+        Scenes::Held => ("the same where a stiff spring holds the damper to a wall", |_| HELD),
         Scenes::Histories => ("the same under pulses and records", |_| under_history),
     };
     let compared: Vec<_> = (0..count)

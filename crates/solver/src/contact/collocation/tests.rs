@@ -50,7 +50,7 @@ fn step_by_step(system: &Coupled, side: Side, touch: &Knot<4>) -> Knot<4> {
     let equations = system.regularised_contact(side);
     let regularised = equations.regularise(&touch.y);
     let budget = Budget::new(Pace::Steps, 100_000, Work::default(), [0.0, 1e9]);
-    let (limits, mut work) = ((1e-13, budget, f64::INFINITY), Work::default());
+    let (limits, mut work) = ((system, 1e-13, budget), Work::default());
     match integrate(equations, touch, regularised, 1e9, limits, &mut work, &mut Unobserved) {
         Ok(End::LiftOff(end)) => end,
         _ => panic!("no lift-off"),
@@ -181,7 +181,7 @@ impl Observer<4> for Compare<'_> {
             let mut find = Find { t: seen.t, y: None };
             let mut work = Work::default();
             let budget = Budget::new(Pace::Steps, 100_000, Work::default(), [0.0, 1e9]);
-            let limits = (1e-13, budget, f64::INFINITY);
+            let limits = (self.system, 1e-13, budget);
             let _ = integrate(
                 equations.clone(),
                 &self.touch,

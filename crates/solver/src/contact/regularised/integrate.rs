@@ -8,7 +8,7 @@ use crate::methods::dop853::{self, EVALUATIONS};
 use crate::motion::knot::Knot;
 use crate::observe::observer::Observer;
 use crate::response::Work;
-use retune_model::{RegularisedContact, RegularisedState};
+use retune_model::{Coupled, RegularisedContact, RegularisedState};
 
 /// How a contact ended.
 pub enum End {
@@ -21,7 +21,7 @@ pub enum End {
 /// Integrates a contact that begins (or goes on) at `from`, regularised `y`, until lift-off or time `to`.
 ///
 /// `rtol` is the error allowed in a step, relative to the largest `q` and the largest speed of this contact; in a sustained contact,
-/// relative to the recent ones. `energy` bounds the energy norm (√J) of the motion up to `to`.
+/// relative to the recent ones.
 ///
 /// # Errors
 /// [`SolverError`] with the time reached: the step underflows, the state is not finite, or the work is more than allowed.
@@ -31,7 +31,7 @@ pub fn integrate(
     from: &Knot<4>,
     y: RegularisedState,
     to: f64,
-    (rtol, budget, energy): (f64, Budget, f64),
+    (system, rtol, budget): (&Coupled, f64, Budget),
     work: &mut Work,
     observer: &mut impl Observer<4>,
 ) -> Result<End, SolverError> {
@@ -51,7 +51,9 @@ pub fn integrate(
             length,
             steps: 1,
             ends: [contact.start, end],
-            energy,
+            // Walls give back at most what they hold.
+            energy: (2.0 * system.total_energy(&contact.start.y)).sqrt()
+                + (end.t - contact.start.t) * system.energy_norm_growth(),
             bounds: Default::default(),
         };
         if length > 0.0 {

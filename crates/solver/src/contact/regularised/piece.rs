@@ -92,11 +92,11 @@ impl Segment<4> for Piece<'_> {
 }
 
 impl Piece<'_> {
-    /// The regularised states of two moments, but for their times; `q` is taken from the clock, because it has lost digits in the state.
+    /// The regularised states of two moments; `q` is taken from the clock, because it has lost digits in the state.
     fn states(&self, ends: [&Knot<4>; 2]) -> [RegularisedState; 2] {
         ends.map(|knot| {
             let [_, w, x1, v1, _] = self.equations.regularise(&knot.y);
-            [knot.clock[0], w, x1, v1, 0.0]
+            [knot.clock[0], w, x1, v1, knot.t - self.touch_down]
         })
     }
 
