@@ -56,6 +56,9 @@ MUTANTS = [
     ("last term of a range", "step", "series.extend(quantity.series(self.mode, &self.anywhere).pop().map(Taylor::from));", ""),
     ("whether a motion reaches a value", "range", "if t <= sure", "if sure >= 0.0"),
     ("largest value about the end", "largest", "*most = most.max(Interval::new(most.lo(), value.hull().hi().max(most.lo())));", "let _ = value;"),
+    ("gaps of a steady motion", "steady", "if !(gap - stroke).is_positive()", "if (gap - stroke).is_negative()"),
+    ("mass or spring in the energy of a steady motion", "steady", "(half * k1).hull().max(", "{ let _ = k1; Interval::ZERO }.max("),
+    ("whether a steady motion is alone and stable", "equations", "self.k2.is_positive() && is_damped", "(self.k2.is_positive() || is_damped)"),
     ("last term of Krawczyk's operator", "theorem", "terms.fold(-moved.hull(), |sum, term| sum + term)", "{ drop(terms); -moved.hull() }"),
     ("box that is mapped into itself", "theorem", "all(|(image, away)| image.is_inside(*away))", "all(|(image, away)| image.is_bounded() && away.is_bounded())"),
     # `== Some(true)` of what is stable has no mutant: a form that falls is negative somewhere only if the largest multiplier is above 1, and that was asked before.

@@ -3,9 +3,10 @@
 use crate::largest::{Largest, largest};
 use crate::orbit::{Closed, Guess, Orbit};
 use crate::stability::{Stability, stability};
+use crate::steady::steady;
 use crate::theorem::{alone, impacts};
 use crate::{Equations, Failure, Interval, Taylor};
-use retune_model::Scene;
+use retune_model::{Bare, Coupled, Scene};
 use serde::Serialize;
 
 /// Half-widths that are tried, in what Krawczyk's operator leaves of the family's curvature.
@@ -18,6 +19,9 @@ const LONGER: f64 = 1.4;
 const SHORTER: f64 = 0.5;
 /// What is left out where no piece can be proven, rad/s; twice as much each time that nothing beyond can be proven either, up to the most.
 const LEFT_OUT: [f64; 2] = [1e-4, 0.01];
+/// Of steady motions, by which share the bound on E1max may exceed what it is in doubles, and the shortest piece that is halved for that, rad/s.
+const TIGHT: f64 = 1e-9;
+const HALVED: f64 = 2e-6;
 /// The longest piece that is tried after it, in what was left out: motions change fast next to a bifurcation.
 const AFTER: f64 = 8.0;
 
@@ -32,7 +36,7 @@ pub struct Piece {
     pub impacts: String,
     /// Bounds that hold at all frequencies: the largest value at each is in them.
     pub largest: Largest,
-    /// No multiplier is larger than this: all are below 1.
+    /// No multiplier is larger than this, and all are below 1.
     pub multipliers: f64,
 }
 
@@ -91,7 +95,51 @@ pub fn band(scene: &Scene, [from, to]: [f64; 2], most: f64, guesses: Guesses<'_>
     Ok(band)
 }
 
+/// Proves the steady motions over a band, where the damper touches no wall at any of its frequencies, or there is none. None if that is not proven of the scene.
+///
+/// # Errors
+/// The proof does not cover such scenes.
+pub fn steady_band(scene: &Scene, omega: [f64; 2], most: f64) -> Result<Option<Band>, Failure> {
+    let (equations, mut band) = (Equations::new(scene)?, Band::default());
+    let worst = match &scene.damper {
+        Some(damper) => Coupled::new(&scene.primary, &scene.forcing, damper).steady_e1_max(omega),
+        None => Bare::new(&scene.primary, &scene.forcing).steady_e1_max(omega),
+    };
+    // How far pieces are halved; no bound rests on it.
+    let goal = most.min((1.0 + TIGHT) * worst.value);
+    let is_proven = equations.comes_to_rest() && band.covers(&equations, omega, [goal, most]);
+    Ok(is_proven.then_some(band))
+}
+
+/// The middle of a piece, and half its width or more.
+fn middle_and_half([from, to]: [f64; 2]) -> [f64; 2] {
+    let middle = 0.5 * (from + to);
+    [middle, (Interval::new(from, to) - Interval::point(middle)).magnitude()]
+}
+
 impl Band {
+    /// Adds the steady motions over a part, in pieces that have no more energy than a goal, if they are long enough to be halved. Whether all touch no wall.
+    fn covers(&mut self, equations: &Equations, omega: [f64; 2], [goal, most]: [f64; 2]) -> bool {
+        let [middle, half] = middle_and_half(omega);
+        let is_short = 2.0 * half <= HALVED;
+        match steady(&equations.at(Taylor::line(middle, half))) {
+            Ok(own) if own.largest.energy.lo() > most || (is_short && own.largest.energy.hi() > most) => {
+                self.leave_out(LeftOut { omega, why: Failure::Above(own.largest.energy, most) });
+                true
+            }
+            Ok(own) if is_short || (2.0 * half <= LONGEST && own.largest.energy.hi() <= goal) => {
+                let (periods, impacts, largest, multipliers) = (1, String::new(), own.largest, 1.0);
+                self.pieces.push(Piece { omega, periods, impacts, largest, multipliers });
+                true
+            }
+            Err(_) if is_short => false,
+            _ => {
+                let halves = [[omega[0], middle], [middle, omega[1]]];
+                halves.into_iter().all(|half| self.covers(equations, half, [goal, most]))
+            }
+        }
+    }
+
     /// Bands that follow one another, as one.
     pub fn joined(parts: Vec<Self>) -> Self {
         parts.into_iter().fold(Self::default(), |mut all, part| {
@@ -169,8 +217,7 @@ impl Task<'_> {
 
     /// A piece, and its family.
     fn piece(&self, omega: [f64; 2], last: Option<&Last>) -> Result<(Piece, Last), Failure> {
-        let middle = 0.5 * (omega[0] + omega[1]);
-        let half = (Interval::new(omega[0], omega[1]) - Interval::point(middle)).magnitude();
+        let [middle, half] = middle_and_half(omega);
         let orbit = self.motion(middle, last)?;
         let equations = self.equations.at(Taylor::line(middle, half));
         let closed = orbit.widened(&equations)?;

@@ -22,13 +22,15 @@ pub struct Equations {
     /// m1.
     pub m1: Interval,
     /// c1.
-    c1: Interval,
+    pub c1: Interval,
     /// k1.
     pub k1: Interval,
-    /// m2, c2, k2.
-    m2: Interval,
-    c2: Interval,
-    k2: Interval,
+    /// m2; zero if there is no damper.
+    pub m2: Interval,
+    /// c2.
+    pub c2: Interval,
+    /// k2.
+    pub k2: Interval,
     /// D.
     pub rest: Interval,
     /// Where the walls are; anywhere if there are none.
@@ -68,16 +70,21 @@ impl Equations {
     /// All fields are named here, so that what the model learns is read or refused.
     ///
     /// # Errors
-    /// No damper, no periodic force, rigid walls, or too small a restitution.
+    /// No damping at all without damper, no periodic force, rigid walls, or too small a restitution.
     pub fn new(scene: &Scene) -> Result<Self, Failure> {
         let number = Interval::decimal;
         let Scene { primary, forcing, damper } = scene;
         let Primary { mass, damping, stiffness } = primary;
         let [m1, c1, k1] = [mass.get(), damping.get(), stiffness.get()].map(number);
-        let Some(Damper { mass, stiffness, damping, rest_distance, clearance, contact }) = damper else {
-            return Err(Failure::Scene("a scene without damper"));
+        let ([m2, c2, k2], [rest, clearance], contact) = match damper {
+            Some(Damper { mass, stiffness, damping, rest_distance, clearance, contact }) => (
+                [mass.get(), damping.get(), stiffness.get()].map(number),
+                [rest_distance.get(), clearance.get()].map(number),
+                *contact,
+            ),
+            // A structure alone moves as one with a damper of no mass, whose spring then is never stretched.
+            None => ([Interval::ZERO, Interval::ZERO, Interval::ONE], [Interval::ZERO; 2], None),
         };
-        let [m2, c2, k2] = [mass.get(), damping.get(), stiffness.get()].map(number);
         // Where a run starts is nothing to a motion that repeats.
         let Forcing { source, frequency, start: _ } = forcing;
         let omega = number(frequency.get());
@@ -98,24 +105,66 @@ impl Equations {
             }
         };
         let is_over_square = matches!(source, Source::BaseAcceleration(_));
-        let rest = number(rest_distance.get());
         let (walls, hertz, factors) = match contact {
             None => ([Interval::ENTIRE; 2], [Interval::ZERO; 2], [Factor::None; 2]),
             Some(Contact::Rigid(_)) => return Err(Failure::Scene("rigid walls")),
             Some(Contact::Hertz(surfaces)) => {
                 let [a, b] = surfaces.losses();
-                let walls = [Interval::ZERO, rest + number(clearance.get())];
-                (walls, hertz_stiffness(surfaces), [Factor::new(&a)?, Factor::new(&b)?])
+                let walls = [Interval::ZERO, rest + clearance];
+                (walls, hertz_stiffness(&surfaces), [Factor::new(&a)?, Factor::new(&b)?])
             }
         };
         let scales = scales(m1 / m2, omega.square() + k1 * (Interval::ONE / m1));
         let omega = Taylor::from(omega);
-        Ok(Self { omega, m1, c1, k1, m2, c2, k2, rest, walls, hertz, factors, scales, force, is_over_square })
+        let own = Self {
+            omega,
+            m1,
+            c1,
+            k1,
+            m2,
+            c2,
+            k2,
+            rest,
+            walls,
+            hertz,
+            factors,
+            scales,
+            force,
+            is_over_square,
+        };
+        if damper.is_none() && !own.comes_to_rest() {
+            return Err(Failure::Scene("a structure without damper, and without spring or dashpot"));
+        }
+        Ok(own)
     }
 
     /// The same at the frequencies of a function, exactly.
     pub fn at(&self, omega: Taylor) -> Self {
         Self { omega, ..self.clone() }
+    }
+
+    /// Whether the system without walls and force is proven to come to rest, that is, to be asymptotically stable.
+    ///
+    /// Its energy is positive definite if both springs are, and falls by `c1 v1² + c2 w²` in time. A motion that keeps it for ever, as one dashpot takes nothing, is
+    /// rest: with `c1 > 0` the structure stands, so the damper's spring pushes it with a constant force, so the damper stands, and no spring is stretched; with
+    /// `c2 > 0` and a mass both masses move as one, under the constant force of the damper's spring, which is zero as the motion is bounded, and so is the other's
+    /// (E. A. Barbashin and N. N. Krasovskii, 1952).
+    pub fn comes_to_rest(&self) -> bool {
+        let is_damped = self.c1.is_positive() || (self.c2.is_positive() && self.m2.is_positive());
+        self.k1.is_positive() && self.k2.is_positive() && is_damped
+    }
+
+    /// Whether there are walls.
+    pub fn has_walls(&self) -> bool {
+        self.walls[0].is_bounded()
+    }
+
+    /// The force over m1, as weights of `[cos φ, sin φ]`.
+    pub fn force_per_mass<T: Number>(&self) -> [T; 2] {
+        let per_m1 = Interval::ONE / self.m1;
+        let (omega, f) = (T::of(self.omega), self.force.map(|part| part * per_m1));
+        let force = [T::constant(f[0]) + (omega * omega).times(f[1]), omega.times(f[2])];
+        if self.is_over_square { force.map(|part| part * (omega * omega).reciprocal()) } else { force }
     }
 
     /// `1/m1 + 1/m2`.
@@ -144,11 +193,7 @@ impl<'a> Flow<'a> {
             Mode::Contact(side) => (sign * (own.walls[side as usize] - own.rest), Some(Push::new(own, side))),
         };
         let [per_m1, per_m2] = [own.m1, own.m2].map(|mass| Interval::ONE / mass);
-        let (omega, f) = (T::of(own.omega), own.force.map(|part| part * per_m1));
-        let mut force = [T::constant(f[0]) + (omega * omega).times(f[1]), omega.times(f[2])];
-        if own.is_over_square {
-            force = force.map(|part| part * (omega * omega).reciprocal());
-        }
+        let (omega, force) = (T::of(own.omega), own.force_per_mass::<T>());
         let (mut y, mut circle) = (vec![*start], vec![start[4].cos_sin()]);
         // Of a contact: the two accelerations, which are multiplied by dt/dθ = q, and that of the speed v.
         let mut accelerations: Vec<[T; 3]> = Vec::new();

@@ -8,7 +8,7 @@ use serde::{Serialize, Serializer};
 pub enum Failure {
     /// The proof does not cover such scenes.
     #[error(
-        "{0}: nothing is proven of such scenes; give a damper, a periodic forcing, and Hertz's surfaces or no walls"
+        "{0}: nothing is proven of such scenes; give damping, a periodic forcing, and Hertz's surfaces or no walls"
     )]
     Scene(&'static str),
     /// A motion comes to a wall, or to the end of a contact, so slowly that it may as well not come there.

@@ -135,7 +135,9 @@ impl Interval {
 
     /// The square roots of the numbers that are not negative; the whole line if there are others.
     pub fn sqrt(self) -> Self {
-        if self.lo >= 0.0 {
+        if self == Self::ZERO {
+            self
+        } else if self.lo >= 0.0 {
             Self { lo: below(self.lo.sqrt()).max(0.0), hi: above(self.hi.sqrt()) }
         } else {
             Self::ENTIRE

@@ -3,7 +3,7 @@
 //!
 //! Read `interval` and `elementary` (numbers), `number` and `equations` (equation (1) and its Taylor series), `step` (a validated step, with
 //! `small`), `range` (what a quantity does during one), `crossing` and `segment` (from one event to the next), `orbit` (the ring of events), then
-//! `theorem`, with `stability` and `largest`, and `band`.
+//! `theorem`, with `stability` and `largest`, and `band`. `steady` is the closed form of what touches no wall.
 //!
 //! ```
 //! use retune_proof::{Stability, prove};
@@ -38,6 +38,7 @@ mod range;
 mod segment;
 mod small;
 mod stability;
+mod steady;
 mod step;
 mod taylor;
 mod theorem;
@@ -45,7 +46,7 @@ mod theorem;
 use equations::Equations;
 use taylor::Taylor;
 
-pub use band::{Band, Guesses, LeftOut, Piece, band};
+pub use band::{Band, Guesses, LeftOut, Piece, band, steady_band};
 pub use elementary::cos_sin;
 pub use event::Event;
 pub use failure::Failure;

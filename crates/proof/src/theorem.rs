@@ -5,6 +5,7 @@ use crate::number::FREE;
 use crate::orbit::{Closed, Orbit, Residual};
 use crate::segment::Node;
 use crate::stability::{Stability, stability};
+use crate::steady::{Steady, steady};
 use crate::{Equations, Event, Failure, Interval, Taylor};
 use retune_model::{Scene, Side};
 use serde::Serialize;
@@ -35,8 +36,9 @@ pub struct Theorem {
     pub periods: usize,
     /// The walls that it strikes in turn, S for the structure and O for the obstacle.
     pub impacts: String,
-    /// The largest width of the box with no other such motion, in m, m/s and rad, about the states at its events.
-    pub alone_within: f64,
+    /// The largest width of the box with no other such motion, in m, m/s and rad, about the states at its events; none if no other motion that touches no wall
+    /// repeats at all.
+    pub alone_within: Option<f64>,
     /// The largest width of the box that it is in.
     pub width: f64,
     /// Its events.
@@ -47,31 +49,58 @@ pub struct Theorem {
     pub largest: Largest,
 }
 
-/// Proves what it can of the periodic motion of a scene near the one from the state `[x1, v1, x2, v2]` at a crest of the force.
+/// Proves what it can of the periodic motion of a scene near the one from the state `[x1, v1, x2, v2]` at a crest of the force. If that touches no wall, and the
+/// system comes to rest without force, the motion is the steady one.
 ///
 /// # Errors
 /// See [`Failure`].
 pub fn prove(scene: &Scene, start: [f64; 4], periods: usize) -> Result<Theorem, Failure> {
     let equations = Equations::new(scene)?;
-    let closed = Orbit::guess(&equations, (start, periods), true)?.improved(&equations)?;
-    let (alone, mut away) = alone(&equations, &closed, &TRIED, WIDEST)?;
+    let is_linear = equations.comes_to_rest();
+    if is_linear && !equations.has_walls() {
+        return Ok(of_steady(steady(&equations)?));
+    }
+    let guess = Orbit::guess(&equations, (start, periods), true)?;
+    if is_linear && guess.nodes.iter().all(|node| node.event == Event::Crest) {
+        return Ok(of_steady(steady(&equations)?));
+    }
+    of_orbit(&equations, guess)
+}
+
+/// What is proven of the motion near a guess, by the way from event to event.
+fn of_orbit(equations: &Equations, guess: Orbit) -> Result<Theorem, Failure> {
+    let closed = guess.improved(equations)?;
+    let (alone, mut away) = alone(equations, &closed, &TRIED, WIDEST)?;
     let orbit = &closed.orbit;
-    let mut known = orbit.residual(&equations, &away)?;
+    let mut known = orbit.residual(equations, &away)?;
     for _ in 0..SMALLER {
         let smaller = krawczyk(&closed, &known, &away);
         // It is in both.
         away = smaller.iter().zip(&away).map(|(new, own)| new.meet(*own).unwrap_or(*own)).collect();
-        known = orbit.residual(&equations, &away)?;
+        known = orbit.residual(equations, &away)?;
     }
     Ok(Theorem {
-        periods,
+        periods: orbit.periods,
         impacts: impacts(orbit),
-        alone_within: width(&alone),
+        alone_within: Some(width(&alone)),
         width: width(&away),
-        events: events(&equations, orbit, &away),
+        events: events(equations, orbit, &away),
         stability: stability(&known.passages),
-        largest: largest(&equations, &known.passages),
+        largest: largest(equations, &known.passages),
     })
+}
+
+/// What is proven of the steady motion: the linear system has no other that repeats, and all its multipliers are below 1.
+fn of_steady(Steady { state, largest }: Steady) -> Theorem {
+    Theorem {
+        periods: 1,
+        impacts: String::new(),
+        alone_within: None,
+        width: width(&state),
+        events: vec![Proven { event: Event::Crest.name(), phase: Interval::ZERO, state }],
+        stability: Stability::Stable(1.0),
+        largest,
+    }
 }
 
 /// A box about the nodes that is proven to hold exactly one solution, the first that is of some sizes, in what Krawczyk's operator makes of the nodes alone; and
@@ -149,4 +178,35 @@ fn events(equations: &Equations, orbit: &Orbit, away: &[Interval]) -> Vec<Proven
         Proven { event: node.event.name(), phase, state: [x1, v1, x1 + r, v1 + w] }
     };
     orbit.nodes.iter().zip(away.chunks(FREE)).map(at).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::step::tests::{SURFACES, scene_with};
+
+    /// The general proof encloses the same state at the crest, E1max and stroke; walls far away do not matter.
+    #[test]
+    fn invariant_the_closed_form_and_the_way_of_a_period_enclose_one_motion() {
+        let walls = format!(r#""D": 0.4, "C": 0.5, "contact": {SURFACES}"#);
+        for damper in [
+            r#""m2": 60, "k2": 2000, "c2": 85"#.to_owned(),
+            format!(r#""m2": 60, "k2": 2000, "c2": 85, {walls}"#),
+        ] {
+            let equations = Equations::new(&scene_with(&damper)).expect("equations");
+            let rest = ([0.0, 0.0, equations.rest.mid(), 0.0], 1);
+            let guess = Orbit::guess(&equations, rest, true).expect("a guess");
+            let general = of_orbit(&equations, guess).expect("a proof");
+            let closed = of_steady(steady(&equations).expect("a gap"));
+            for (wide, narrow) in general.events[0].state.into_iter().zip(closed.events[0].state) {
+                assert!(wide.meet(narrow).is_some() && narrow.width() < 1e-13, "{wide} {narrow}");
+            }
+            for ((_, wide), (_, narrow)) in general.largest.all().into_iter().zip(closed.largest.all()) {
+                assert!(
+                    wide.meet(narrow).is_some() && narrow.width() <= 1e-12 * wide.hi() + 1e-300,
+                    "{wide} {narrow}"
+                );
+            }
+        }
+    }
 }
