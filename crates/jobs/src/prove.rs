@@ -1,12 +1,15 @@
 //! `prove`: a proof by interval arithmetic of the periodic motion of a scene. The solver guesses the motion, and `retune_proof` owes it nothing else.
 
+pub mod band;
+
 use crate::Error;
 use crate::again::json;
 use crate::tune::OPTIMUM;
+use band::{Band, LeftOut, steady_band};
 use rayon::prelude::*;
 use retune_dynamics::periodic::settle::settled;
 use retune_model::{Parameter, Start};
-use retune_proof::{Band, Failure, Interval, LeftOut, Stability, Theorem};
+use retune_proof::{Interval, Stability, Theorem};
 use retune_study::{self as study, Setting, Study, counted};
 use serde::Serialize;
 use std::fmt;
@@ -144,11 +147,9 @@ pub fn prove_band(
         return Err(Error::Argument { option: "--to", problem });
     }
     let not_proven = |why: String| Error::NotProven { name: study.name().to_owned(), why };
-    let steady = retune_proof::steady_band(&study.scene, [from, to], most);
-    let band = match steady.map_err(|failure| not_proven(failure.to_string()))? {
-        Some(band) => band,
-        None => by_shares(&study, [from, to], most).map_err(|failure| not_proven(failure.to_string()))?,
-    };
+    let steady = steady_band(&study.scene, [from, to], most);
+    let steady = steady.map_err(|failure| not_proven(failure.to_string()))?;
+    let band = steady.unwrap_or_else(|| by_shares(&study, [from, to], most));
     match band.left_out.first() {
         Some(LeftOut { why, .. }) if band.pieces.is_empty() => Err(not_proven(why.to_string())),
         _ => Ok(BandProof { study: study.name().to_owned(), omega: [from, to], energy: band.energy(), band }),
@@ -156,16 +157,15 @@ pub fn prove_band(
 }
 
 /// The proof over the shares of a band, side by side.
-fn by_shares(study: &Study, [from, to]: [f64; 2], most: f64) -> Result<Band, Failure> {
+fn by_shares(study: &Study, [from, to]: [f64; 2], most: f64) -> Band {
     let guess = |omega: f64| {
         let scene = Parameter::Omega.at(study.scene, omega).ok()?;
         settled(&scene, &study.solver.settings()).ok()?.map(|(periods, start)| (start, periods))
     };
     let shares = ((to - from) / SHARE).ceil().max(1.0) as usize;
     let end = |k: usize| if k == shares { to } else { from + (to - from) * (k as f64 / shares as f64) };
-    let share = |k: usize| retune_proof::band(&study.scene, [end(k), end(k + 1)], most, &guess);
-    let parts = (0..shares).into_par_iter().map(share).collect::<Result<Vec<_>, _>>();
-    Ok(Band::joined(parts?))
+    let share = |k: usize| band::band(&study.scene, [end(k), end(k + 1)], most, &guess);
+    Band::joined((0..shares).into_par_iter().map(share).collect())
 }
 
 impl fmt::Display for BandProof {

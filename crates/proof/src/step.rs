@@ -1,9 +1,10 @@
 //! One validated step of the motions from a set of states, together with their derivatives by the first state.
 
 use crate::equations::{Flow, Mode, at};
-use crate::number::{Family, Gradient, Number, STATE, State};
-use crate::small::{Frame, Matrix, identity, matrix, plus, times, times_vector};
-use crate::{Interval, Taylor};
+use crate::number::{
+    Family, Frame, Gradient, Matrix, STATE, State, identity, matrix, plus, times, times_vector,
+};
+use crate::{Interval, Number, Taylor};
 use std::array;
 
 /// Terms of a Taylor polynomial: the first power that is left out.
