@@ -3,6 +3,7 @@
 python3 tests/proof.py [--write]
 """
 
+import csv
 import decimal
 import json
 import math
@@ -11,6 +12,8 @@ import sys
 
 PLACE = pathlib.Path(__file__).parent.parent / "results" / "proof"
 README = PLACE / "README.md"
+# Bifurcations of the tuned damper, computed.
+BRANCHES = PLACE.parent / "branches" / "tuned" / "bifurcations.csv"
 HEAD = """# Proven bands
 
 `just proof` made these files: [a proof by interval arithmetic](../../docs/proof.md) that at every frequency of a band, but for what is named, there is a stable
@@ -23,8 +26,9 @@ periodic motion with at most so much energy. The JSON files have the pieces with
 # The files of the hedged damper, by the restitution of its contacts.
 HEDGED = {"0.6": "", "0.7": "-0.7", "0.8": "-0.8", "0.9": "-0.9", "1": "-lossless"}
 HOLES = (
-    "no band was proven over {}. There [`retune branches`](../branches/tuned/README.md) knows stable periodic motions of 4 periods up to 7.71196 rad/s, of 12 from 7.71476 to "
-    "7.71516, of 8 from 7.82535 to 7.85369 and of 4 beyond, and none from 7.71516 to 7.82535; bands of motions of 8 and 12 periods were not run to their end"
+    "no band was proven over {}. What [`retune branches`](../branches/tuned/README.md) computes of it: motions of 4 periods are stable up to a Neimark-Sacker bifurcation at "
+    "7.711963 rad/s, of 12 from a fold at 7.714763 to a period doubling at 7.715157, of 8 from a period doubling at 7.825353 to one at 7.853689, and of 4 beyond; no stable periodic "
+    "motion is known from 7.711963 to 7.714763 and from 7.715157 to 7.825353. Over the others bands were not run to their end"
 )
 SINGLE = """
 ## Single frequencies
@@ -38,7 +42,8 @@ INTERVALS = """
 ## Motions
 
 What was proven from where to where, and what not: at each frequency of a row there is a stable motion that repeats after so many periods of the force and strikes
-these walls in turn (S the structure, O the obstacle). Ends are rounded to the side on which less is proven; the JSON files have them in full.
+these walls in turn (S the structure, O the obstacle). Ends are rounded to the side on which less is proven; the JSON files have them in full. What is not proven is
+about a bifurcation, whose kind is computed, not proven.
 
 | file | omega, rad/s | periods | impacts | E1max is at most, J |
 | --- | --- | --- | --- | --- |
@@ -60,6 +65,28 @@ def intervals(proof):
     return found
 
 
+def bifurcations():
+    """At stable motions of the tuned damper: frequency, and what it is."""
+    with BRANCHES.open() as file:
+        rows = list(csv.DictReader(file))
+    # All other multipliers are inside the unit circle, but for the one or two that reach it.
+    size = lambda row: max(math.hypot(float(row[f"re{n}"]), float(row[f"im{n}"])) for n in range(1, 5))
+    stable = [row for row in rows if row["kind"] != "grazing" and size(row) < 1 + 1e-6]
+    return [(float(row["omega"]), f"{row['kind']} of the motion of {row['periods']} {plural(row['periods'])}") for row in stable]
+
+
+def plural(periods):
+    return "period" if str(periods) == "1" else "periods"
+
+
+def kind(name, proof, ends):
+    """What bifurcation a gap is about: the computed one of the tuned damper in it; of other dampers, what the proven motions beside it say."""
+    if "hedged" not in name:
+        return "; ".join(f"{words} at {omega:.6f}" for omega, words in bifurcations() if ends[0] <= omega <= ends[1])
+    beside = [piece["periods"] for side in (0, 1) for piece in proof["pieces"] if piece["omega"][1 - side] == ends[side]]
+    return f"motions of {beside[0]} {plural(beside[0])} before it, of {beside[1]} beyond: a period doubling" if len(beside) == 2 and beside[1] == 2 * beside[0] else ""
+
+
 def upwards(energy):
     """What it is at most may not be rounded down."""
     return f"{math.ceil(energy * 1e5) / 1e5:.5f}"
@@ -76,11 +103,12 @@ def gap(ends):
     return rounded(ends, decimal.ROUND_FLOOR, decimal.ROUND_CEILING)
 
 
-def interval(name, kind, ends, most):
-    if len(kind) == 1:
-        return f"| {name} | {gap(ends)} | - | not proven: {kind[0]} | - |\n"
+def interval(name, proof, what, ends, most):
+    if len(what) == 1:
+        about = kind(name, proof, ends)
+        return f"| {name} | {gap(ends)} | - | not proven: {what[0]}{' (' + about + ')' if about else ''} | - |\n"
     proven = rounded(ends, decimal.ROUND_CEILING, decimal.ROUND_FLOOR)
-    return f"| {name} | {proven} | {kind[0]} | {kind[1]} | {upwards(most)} |\n"
+    return f"| {name} | {proven} | {what[0]} | {what[1]} | {upwards(most)} |\n"
 
 
 def cover(name, proof):
@@ -94,6 +122,8 @@ def cover(name, proof):
         faults.append(f"{name}: E1max {proof['E1max']}, but a piece has {most}")
     if not all(piece["multipliers"] <= 1 for piece in proof["pieces"]):
         faults.append(f"{name}: a piece is not stable")
+    unnamed = [part["omega"] for part in proof["left_out"] if not kind(name, proof, part["omega"])]
+    faults += [f"{name}: no bifurcation is known from {a} to {b} rad/s" for a, b in unnamed]
     return faults
 
 
@@ -154,7 +184,7 @@ def main():
     faults = [fault for name, proof in proofs.items() for fault in cover(name, proof)]
     text = HEAD + "".join(row(name, proof) for name, proof in proofs.items())
     text += "\n## Together\n\n" + tuned(proofs) + hedged(proofs)
-    text += INTERVALS + "".join(interval(name, *part) for name, proof in proofs.items() for part in intervals(proof))
+    text += INTERVALS + "".join(interval(name, proof, *part) for name, proof in proofs.items() for part in intervals(proof))
     text += SINGLE + "".join(single(file) for file in sorted((PLACE / "single").glob("*.json")))
     if "--write" in sys.argv:
         README.write_text(text)

@@ -1,12 +1,15 @@
 //! `prove`: a proof by interval arithmetic of the periodic motion of a scene. The solver guesses the motion, and `retune_proof` owes it nothing else.
 
+pub mod band;
+
 use crate::Error;
 use crate::again::json;
 use crate::tune::OPTIMUM;
+use band::{Band, LeftOut, steady_band};
 use rayon::prelude::*;
 use retune_dynamics::periodic::settle::settled;
 use retune_model::{Parameter, Start};
-use retune_proof::{Band, Interval, LeftOut, Stability, Theorem};
+use retune_proof::{Interval, Stability, Theorem};
 use retune_study::{self as study, Setting, Study, counted};
 use serde::Serialize;
 use std::fmt;
@@ -74,9 +77,9 @@ fn found(study: &Study) -> Result<(usize, [f64; 4]), Error> {
             "none found: the run settles on no periodic motion; give --from and --periods, or another --omega"
                 .to_owned(),
     };
-    // Whatever has no such run is refused by the proof, in its words.
-    let has_period = study.scene.damper.is_some() && study.scene.forcing.frequency.get() > 0.0;
-    if !has_period {
+    // What touches no wall has one motion that repeats, whatever the guess; what has no such run is refused by the proof, in its words.
+    let has_walls = study.scene.damper.is_some_and(|damper| damper.contact.is_some());
+    if !has_walls || study.scene.forcing.frequency.get() <= 0.0 {
         return Ok((1, [0.0; 4]));
     }
     settled(&study.scene, &study.solver.settings())?.ok_or_else(none)
@@ -94,11 +97,10 @@ impl fmt::Display for Proof {
             counted(*periods as u64, "period")
         )?;
         // Two digits, of 5 % less and more: as many, rounded to nearest, of these themselves may say too much.
-        let (alone_within, width) = (0.95 * alone_within, 1.05 * width);
-        writeln!(
-            f,
-            "alone         no other such motion is in a box {alone_within:.1e} wide about its states at the events; it is within {width:.1e} (m, m/s, rad)"
-        )?;
+        let other = alone_within.map_or("motion that touches no wall repeats".to_owned(), |within| {
+            format!("such motion is in a box {:.1e} wide about its states at the events", 0.95 * within)
+        });
+        writeln!(f, "alone         no other {other}; it is within {:.1e} (m, m/s, rad)", 1.05 * width)?;
         match stability {
             Stability::Stable(bound) => writeln!(f, "stable        all multipliers are below {bound}")?,
             Stability::Unstable => writeln!(f, "unstable      a multiplier is above 1")?,
@@ -127,7 +129,8 @@ pub struct BandProof {
 /// Frequencies that are proven one after another, rad/s; the shares of a band are proven side by side.
 const SHARE: f64 = 0.1;
 
-/// Proves stable motions with an E1max of at most `most` (J) over a band, at each frequency one near that on which the run of the scene settles.
+/// Proves stable motions with an E1max of at most `most` (J) over a band: the steady ones, if the damper then touches no wall at any frequency of the band, or else
+/// at each frequency one near that on which the run of the scene settles.
 ///
 /// # Errors
 /// The input is wrong, or nothing of the band can be proven.
@@ -144,19 +147,25 @@ pub fn prove_band(
         return Err(Error::Argument { option: "--to", problem });
     }
     let not_proven = |why: String| Error::NotProven { name: study.name().to_owned(), why };
+    let steady = steady_band(&study.scene, [from, to], most);
+    let steady = steady.map_err(|failure| not_proven(failure.to_string()))?;
+    let band = steady.unwrap_or_else(|| by_shares(&study, [from, to], most));
+    match band.left_out.first() {
+        Some(LeftOut { why, .. }) if band.pieces.is_empty() => Err(not_proven(why.to_string())),
+        _ => Ok(BandProof { study: study.name().to_owned(), omega: [from, to], energy: band.energy(), band }),
+    }
+}
+
+/// The proof over the shares of a band, side by side.
+fn by_shares(study: &Study, [from, to]: [f64; 2], most: f64) -> Band {
     let guess = |omega: f64| {
         let scene = Parameter::Omega.at(study.scene, omega).ok()?;
         settled(&scene, &study.solver.settings()).ok()?.map(|(periods, start)| (start, periods))
     };
     let shares = ((to - from) / SHARE).ceil().max(1.0) as usize;
     let end = |k: usize| if k == shares { to } else { from + (to - from) * (k as f64 / shares as f64) };
-    let share = |k: usize| retune_proof::band(&study.scene, [end(k), end(k + 1)], most, &guess);
-    let parts = (0..shares).into_par_iter().map(share).collect::<Result<Vec<_>, _>>();
-    let band = Band::joined(parts.map_err(|failure| not_proven(failure.to_string()))?);
-    match band.left_out.first() {
-        Some(LeftOut { why, .. }) if band.pieces.is_empty() => Err(not_proven(why.to_string())),
-        _ => Ok(BandProof { study: study.name().to_owned(), omega: [from, to], energy: band.energy(), band }),
-    }
+    let share = |k: usize| band::band(&study.scene, [end(k), end(k + 1)], most, &guess);
+    Band::joined((0..shares).into_par_iter().map(share).collect())
 }
 
 impl fmt::Display for BandProof {

@@ -1,10 +1,9 @@
 //! Where motions cross a section: a wall, the end of a contact, or a crest of the force.
 
 use crate::equations::Flow;
-use crate::number::Family;
-use crate::small::{Matrix, matrix, times};
+use crate::number::{Family, Matrix, matrix, times};
 use crate::step::{States, derivatives_within, enclosure};
-use crate::{Event, Interval, Taylor};
+use crate::{Event, Interval, Number, Taylor};
 use std::array;
 
 /// Attempts to enclose the time of a crossing.
@@ -88,8 +87,7 @@ fn reach(flow: Flow<'_>, start: &Family, section: &Section) -> Option<(Taylor, F
 mod tests {
     use super::*;
     use crate::equations::Mode;
-    use crate::number::{SPEED, STATE};
-    use crate::small::identity;
+    use crate::number::{SPEED, STATE, identity};
     use crate::step::{ORDER, step};
     use retune_model::Side;
 

@@ -7,28 +7,19 @@
 
 use crate::elementary::pi;
 use crate::loss::Factor;
-use crate::number::{Number, SPEED, STATE};
-use crate::{Event, Failure, Interval, Taylor};
-use retune_model::{
-    Contact, Damper, Forcing, PoissonRatio, Positive, Primary, Scene, Side, Source, Surfaces,
-};
-use std::array;
+use crate::number::{SPEED, STATE};
+use crate::{Event, Failure, Interval, Number, Taylor};
+use retune_model::{Contact, Damper, Forcing, Primary, Scene, Side, Source, Surfaces};
 
 /// The numbers of a scene.
 #[derive(Clone, Debug)]
 pub struct Equations {
     /// ω, of a family a function of its parameter.
     pub omega: Taylor,
-    /// m1.
-    pub m1: Interval,
-    /// c1.
-    c1: Interval,
-    /// k1.
-    pub k1: Interval,
-    /// m2, c2, k2.
-    m2: Interval,
-    c2: Interval,
-    k2: Interval,
+    /// m1, c1, k1.
+    pub primary: [Interval; 3],
+    /// m2, c2, k2; no mass if there is no damper.
+    pub damper: [Interval; 3],
     /// D.
     pub rest: Interval,
     /// Where the walls are; anywhere if there are none.
@@ -68,16 +59,20 @@ impl Equations {
     /// All fields are named here, so that what the model learns is read or refused.
     ///
     /// # Errors
-    /// No damper, no periodic force, rigid walls, or too small a restitution.
+    /// No damping at all without damper, no periodic force, rigid walls, or too small a restitution.
     pub fn new(scene: &Scene) -> Result<Self, Failure> {
         let number = Interval::decimal;
-        let Scene { primary, forcing, damper } = scene;
-        let Primary { mass, damping, stiffness } = primary;
-        let [m1, c1, k1] = [mass.get(), damping.get(), stiffness.get()].map(number);
-        let Some(Damper { mass, stiffness, damping, rest_distance, clearance, contact }) = damper else {
-            return Err(Failure::Scene("a scene without damper"));
+        let Scene { primary: Primary { mass, damping, stiffness }, forcing, damper: own } = scene;
+        let primary @ [m1, c1, k1] = [mass.get(), damping.get(), stiffness.get()].map(number);
+        let (damper, [rest, clearance], contact) = match own {
+            Some(Damper { mass, stiffness, damping, rest_distance, clearance, contact }) => (
+                [mass.get(), damping.get(), stiffness.get()].map(number),
+                [rest_distance.get(), clearance.get()].map(number),
+                *contact,
+            ),
+            // A structure alone moves as one with a damper of no mass, whose spring then is never stretched.
+            None => ([Interval::ZERO, Interval::ZERO, Interval::ONE], [Interval::ZERO; 2], None),
         };
-        let [m2, c2, k2] = [mass.get(), damping.get(), stiffness.get()].map(number);
         // Where a run starts is nothing to a motion that repeats.
         let Forcing { source, frequency, start: _ } = forcing;
         let omega = number(frequency.get());
@@ -98,19 +93,22 @@ impl Equations {
             }
         };
         let is_over_square = matches!(source, Source::BaseAcceleration(_));
-        let rest = number(rest_distance.get());
         let (walls, hertz, factors) = match contact {
             None => ([Interval::ENTIRE; 2], [Interval::ZERO; 2], [Factor::None; 2]),
             Some(Contact::Rigid(_)) => return Err(Failure::Scene("rigid walls")),
             Some(Contact::Hertz(surfaces)) => {
                 let [a, b] = surfaces.losses();
-                let walls = [Interval::ZERO, rest + number(clearance.get())];
-                (walls, hertz_stiffness(surfaces), [Factor::new(&a)?, Factor::new(&b)?])
+                let walls = [Interval::ZERO, rest + clearance];
+                (walls, hertz_stiffness(&surfaces), [Factor::new(&a)?, Factor::new(&b)?])
             }
         };
-        let scales = scales(m1 / m2, omega.square() + k1 * (Interval::ONE / m1));
+        let scales = scales(m1 / damper[0], omega.square() + k1 * (Interval::ONE / m1));
         let omega = Taylor::from(omega);
-        Ok(Self { omega, m1, c1, k1, m2, c2, k2, rest, walls, hertz, factors, scales, force, is_over_square })
+        let all = Self { omega, primary, damper, rest, walls, hertz, factors, scales, force, is_over_square };
+        if own.is_none() && !all.comes_to_rest() {
+            return Err(Failure::Scene("a structure without damper, and without spring or dashpot"));
+        }
+        Ok(all)
     }
 
     /// The same at the frequencies of a function, exactly.
@@ -118,9 +116,34 @@ impl Equations {
         Self { omega, ..self.clone() }
     }
 
+    /// Whether the system without walls and force is proven to come to rest, that is, to be asymptotically stable.
+    ///
+    /// Its energy is positive definite if both springs are, and falls by `c1 v1² + c2 w²` in time. A motion that keeps it for ever, as one dashpot takes nothing, is
+    /// rest: with `c1 > 0` the structure stands, so the damper's spring pushes it with a constant force, so the damper stands, and no spring is stretched; with
+    /// `c2 > 0` and a mass both masses move as one, under the constant force of the damper's spring, which is zero as the motion is bounded, and so is the other's
+    /// (E. A. Barbashin and N. N. Krasovskii, 1952).
+    pub fn comes_to_rest(&self) -> bool {
+        let [[_, c1, k1], [m2, c2, k2]] = [self.primary, self.damper];
+        let is_damped = c1.is_positive() || (c2.is_positive() && m2.is_positive());
+        k1.is_positive() && k2.is_positive() && is_damped
+    }
+
+    /// Whether there are walls.
+    pub fn has_walls(&self) -> bool {
+        self.walls[0].is_bounded()
+    }
+
+    /// The force over m1, as weights of `[cos φ, sin φ]`.
+    pub fn force_per_mass<T: Number>(&self) -> [T; 2] {
+        let per_m1 = Interval::ONE / self.primary[0];
+        let (omega, f) = (T::of(self.omega), self.force.map(|part| part * per_m1));
+        let force = [T::constant(f[0]) + (omega * omega).times(f[1]), omega.times(f[2])];
+        if self.is_over_square { force.map(|part| part * (omega * omega).reciprocal()) } else { force }
+    }
+
     /// `1/m1 + 1/m2`.
     pub fn inverse_masses(&self) -> Interval {
-        Interval::ONE / self.m1 + Interval::ONE / self.m2
+        Interval::ONE / self.primary[0] + Interval::ONE / self.damper[0]
     }
 }
 
@@ -143,31 +166,31 @@ impl<'a> Flow<'a> {
             Mode::Flight => (-own.rest, None),
             Mode::Contact(side) => (sign * (own.walls[side as usize] - own.rest), Some(Push::new(own, side))),
         };
-        let [per_m1, per_m2] = [own.m1, own.m2].map(|mass| Interval::ONE / mass);
-        let (omega, f) = (T::of(own.omega), own.force.map(|part| part * per_m1));
-        let mut force = [T::constant(f[0]) + (omega * omega).times(f[1]), omega.times(f[2])];
-        if own.is_over_square {
-            force = force.map(|part| part * (omega * omega).reciprocal());
-        }
+        let [[m1, c1, k1], [m2, c2, k2]] = [own.primary, own.damper];
+        let [per_m1, per_m2] = [m1, m2].map(|mass| Interval::ONE / mass);
+        let (omega, force) = (T::of(own.omega), own.force_per_mass::<T>());
         let (mut y, mut circle) = (vec![*start], vec![start[4].cos_sin()]);
         // Of a contact: the two accelerations, which are multiplied by dt/dθ = q, and that of the speed v.
         let mut accelerations: Vec<[T; 3]> = Vec::new();
         for k in 0..order {
             let [u, w, x1, v1, ..] = y[k];
             let [cos, sin] = circle[k];
-            let (mut depth, mut push) = (u, w.times(own.c2));
+            let (mut depth, mut push) = (u, w.times(c2));
             if let Some(contact) = &mut contact {
                 contact.extend(&y);
                 (depth, push) = (contact.factors[0][k], push + contact.force[k]);
             }
-            push = push + depth.times(own.k2);
+            push = push + depth.times(k2);
             if k == 0 {
-                push = push + T::constant(own.k2 * stretch);
+                push = push + T::constant(k2 * stretch);
             }
             // m1 a1 = F - c1 v1 - k1 x1 + s push, and m2 a2 = -s push.
-            let a1 = cos * force[0] + sin * force[1] - v1.times(own.c1 * per_m1) - x1.times(own.k1 * per_m1)
+            let a1 = cos * force[0]
+                + sin * force[1]
+                + -v1.times(c1 * per_m1)
+                + -x1.times(k1 * per_m1)
                 + push.times(sign * per_m1);
-            let rate = zero - push.times(per_m2) - a1.times(sign);
+            let rate = -push.times(per_m2) + -a1.times(sign);
             let slopes = if let Some(contact) = &mut contact {
                 let others = rate + contact.force[k].times(own.inverse_masses());
                 accelerations.push([rate, a1, contact.speeding(others)]);
@@ -212,8 +235,7 @@ pub struct Push<'a, T> {
 impl<'a, T: Number> Push<'a, T> {
     /// Before its first term.
     pub fn new(equations: &'a Equations, side: Side) -> Self {
-        let none = |_| Vec::new();
-        let (factors, denominator) = (array::from_fn(none), array::from_fn(none));
+        let (factors, denominator) = Default::default();
         Self { equations, side, force: Vec::new(), factors, denominator }
     }
 
@@ -266,7 +288,7 @@ impl<'a, T: Number> Push<'a, T> {
 fn quotient<T: Number>(inverse: &mut Vec<T>, of: impl Fn(usize) -> T) {
     let next = match inverse.len() {
         0 => of(0).reciprocal(),
-        k => T::constant(Interval::ZERO) - inverse[0] * product(k - 1, |i| inverse[i], |i| of(i + 1)),
+        k => -inverse[0] * product(k - 1, |i| inverse[i], |i| of(i + 1)),
     };
     inverse.push(next);
 }
@@ -292,12 +314,11 @@ fn hertz_stiffness(surfaces: &Surfaces) -> [Interval; 2] {
         loss: _, loss_obstacle: _, strength: _, density: _,
     } = surfaces;
     let number = Interval::decimal;
-    let softness = |young: &Positive, poisson: &PoissonRatio| {
-        (Interval::ONE - number(poisson.get()).square()) / (pi() * number(young.get()))
-    };
+    let softness =
+        |young: f64, poisson: f64| (Interval::ONE - number(poisson).square()) / (pi() * number(young));
     let pairs = [
-        softness(young_1, poisson_1) + softness(young_2, poisson_2),
-        softness(young_3, poisson_3) + softness(young_4, poisson_4),
+        softness(young_1.get(), poisson_1.get()) + softness(young_2.get(), poisson_2.get()),
+        softness(young_3.get(), poisson_3.get()) + softness(young_4.get(), poisson_4.get()),
     ];
     let curvature = Interval::ONE / number(radius.get());
     let [three, four] = [3.0, 4.0].map(Interval::point);

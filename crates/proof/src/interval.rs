@@ -5,7 +5,6 @@
 //! becomes the whole line.
 
 use serde::Serialize;
-use std::fmt;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// All real numbers from `lo` to `hi`, both included.
@@ -128,14 +127,15 @@ impl Interval {
 
     /// The squares of the numbers.
     pub fn square(self) -> Self {
-        let [a, b] = [self.lo.abs(), self.hi.abs()];
-        let least = if self.contains(0.0) { 0.0 } else { below(a.min(b) * a.min(b)).max(0.0) };
-        Self { lo: least, hi: above(a.max(b) * a.max(b)) }
+        let Self { lo, hi } = self.abs();
+        Self { lo: below(lo * lo).max(0.0), hi: above(hi * hi) }
     }
 
     /// The square roots of the numbers that are not negative; the whole line if there are others.
     pub fn sqrt(self) -> Self {
-        if self.lo >= 0.0 {
+        if self == Self::ZERO {
+            self
+        } else if self.lo >= 0.0 {
             Self { lo: below(self.lo.sqrt()).max(0.0), hi: above(self.hi.sqrt()) }
         } else {
             Self::ENTIRE
@@ -144,8 +144,7 @@ impl Interval {
 
     /// The absolute values of the numbers.
     pub fn abs(self) -> Self {
-        let least = if self.contains(0.0) { 0.0 } else { self.lo.abs().min(self.hi.abs()) };
-        Self { lo: least, hi: self.magnitude() }
+        self.max(-self).max(Self::ZERO)
     }
 
     /// The larger of a number of each.
@@ -159,13 +158,10 @@ impl Add for Interval {
 
     fn add(self, other: Self) -> Self {
         // Exact, and not wider: sums begin with zero.
-        if self == Self::ZERO {
-            return other;
+        match (self, other) {
+            (Self::ZERO, x) | (x, Self::ZERO) => x,
+            _ => Self { lo: below(self.lo + other.lo), hi: above(self.hi + other.hi) },
         }
-        if other == Self::ZERO {
-            return self;
-        }
-        Self { lo: below(self.lo + other.lo), hi: above(self.hi + other.hi) }
     }
 }
 
@@ -228,15 +224,17 @@ impl From<Interval> for [f64; 2] {
     }
 }
 
-impl fmt::Display for Interval {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "[{}, {}]", self.lo, self.hi)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fmt;
+
+    /// Only tests show intervals.
+    impl fmt::Display for Interval {
+        fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            write!(f, "[{}, {}]", self.lo, self.hi)
+        }
+    }
 
     /// A small generator (Steele, Lea and Flood's SplitMix64).
     pub struct Draws(u64);

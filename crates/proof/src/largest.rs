@@ -1,11 +1,11 @@
 //! The largest values of a motion over its whole period.
 
 use crate::equations::{Mode, Push, product};
-use crate::number::{Number, STATE};
+use crate::number::STATE;
 use crate::range::Range;
 use crate::segment::Passage;
 use crate::step::Quantity;
-use crate::{Equations, Interval};
+use crate::{Equations, Interval, Number};
 use retune_model::Measure;
 use serde::{Serialize, Serializer};
 
@@ -39,11 +39,7 @@ impl Serialize for Largest {
 
 /// The largest values over all segments of a motion.
 pub fn largest(equations: &Equations, passages: &[Passage]) -> Largest {
-    let over = |of: Of| {
-        let mut most = Interval::ZERO;
-        passages.iter().for_each(|passage| over_passage(passage, &(equations, of), &mut most));
-        most
-    };
+    let over = |of: Of| over(passages, &(equations, of));
     Largest {
         energy: over(Of::Energy),
         stroke: over(Of::Stretch(1.0)).max(over(Of::Stretch(-1.0))),
@@ -51,24 +47,25 @@ pub fn largest(equations: &Equations, passages: &[Passage]) -> Largest {
     }
 }
 
-/// Raises the largest value so far to that over a segment. There is no contact force in flight.
-fn over_passage(passage: &Passage, value: &(&Equations, Of), most: &mut Interval) {
-    for (k, piece) in passage.pieces.iter().enumerate() {
-        if value.1 == Of::Force && piece.mode == Mode::Flight {
-            return;
-        }
-        let is_last = k + 1 == passage.pieces.len();
-        // The segment may end before the last piece does; it may also end after it.
-        let sure = if is_last { (Interval::ONE + passage.delay).lo().min(1.0) } else { 1.0 };
-        Range::new(piece.series_of(value)).raise(most, sure);
-        if is_last && let Some(&value) = value.series(piece.mode, &[passage.near]).first() {
-            *most = most.max(Interval::new(most.lo(), value.hull().hi().max(most.lo())));
+/// The largest value of a quantity that is not below zero.
+fn over(passages: &[Passage], value: &(&Equations, Of)) -> Interval {
+    let mut most = Interval::ZERO;
+    for Passage { pieces, near, delay, .. } in passages {
+        for (k, piece) in pieces.iter().enumerate() {
+            let is_last = k + 1 == pieces.len();
+            // The segment may end before the last piece does; it may also end after it.
+            let sure = if is_last { (Interval::ONE + *delay).lo().min(1.0) } else { 1.0 };
+            Range::new(piece.series_of(value)).raise(&mut most, sure);
+            if is_last && let Some(&value) = value.series(piece.mode, &[*near]).first() {
+                most = most.max(Interval::new(most.lo(), value.hull().hi().max(most.lo())));
+            }
         }
     }
+    most
 }
 
 /// What is largest.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 enum Of {
     Energy,
     /// Times a sign.
@@ -83,7 +80,7 @@ impl Quantity for (&Equations, Of) {
         match (of, mode) {
             // (m1 v1² + k1 x1²)/2.
             (Of::Energy, _) => {
-                let [m, k] = [equations.m1, equations.k1].map(|x| Interval::point(0.5) * x);
+                let [m, _, k] = equations.primary.map(|x| Interval::point(0.5) * x);
                 (0..motion.len()).map(|n| square(n, 3).times(m) + square(n, 2).times(k)).collect()
             }
             // r - D; in a contact r is the wall's position and z = q² beyond it.
@@ -105,6 +102,7 @@ impl Quantity for (&Equations, Of) {
                 (0..motion.len()).for_each(|_| push.extend(motion));
                 push.force
             }
+            // None.
             (Of::Force, Mode::Flight) => vec![T::constant(Interval::ZERO); motion.len()],
         }
     }

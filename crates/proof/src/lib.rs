@@ -1,9 +1,9 @@
 //! Proofs by interval arithmetic that a damper has a periodic motion: that it exists and is alone in a small box, its sequence of impacts, whether it is
 //! stable, and its largest values. Nothing of the solver is used: a motion that it found is the guess. `docs/proof.md` has the theorem.
 //!
-//! Read `interval` and `elementary` (numbers), `number` and `equations` (equation (1) and its Taylor series), `step` (a validated step, with
-//! `small`), `range` (what a quantity does during one), `crossing` and `segment` (from one event to the next), `orbit` (the ring of events), then
-//! `theorem`, with `stability` and `largest`, and `band`.
+//! Read `interval`, `elementary`, `taylor` and `number` (what is computed in), `equations` (equation (1) and its Taylor series), `step` (a validated step),
+//! `range` (what a quantity does during one), `crossing` and `segment` (from one event to the next), `orbit` (the ring of events), then `theorem`, with
+//! `stability` and `largest`.
 //!
 //! ```
 //! use retune_proof::{Stability, prove};
@@ -22,34 +22,29 @@
 //! ```
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
-mod band;
 mod crossing;
 mod elementary;
 mod equations;
 mod event;
-mod failure;
 mod interval;
-mod inverse;
 mod largest;
 mod loss;
 mod number;
 mod orbit;
 mod range;
 mod segment;
-mod small;
 mod stability;
 mod step;
 mod taylor;
 mod theorem;
 
 use equations::Equations;
-use taylor::Taylor;
+use taylor::{Number, Taylor};
 
-pub use band::{Band, Guesses, LeftOut, Piece, band};
 pub use elementary::cos_sin;
-pub use event::Event;
-pub use failure::Failure;
+pub use event::{Event, Failure};
 pub use interval::Interval;
 pub use largest::Largest;
+pub use orbit::Guess;
 pub use stability::Stability;
-pub use theorem::{Proven, Theorem, prove};
+pub use theorem::{Family, Proven, Start, Theorem, prove, prove_over, prove_steady};

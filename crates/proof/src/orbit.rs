@@ -2,8 +2,7 @@
 
 use crate::crossing::Section;
 use crate::elementary::pi;
-use crate::inverse::Inverse;
-use crate::number::FREE;
+use crate::number::{FREE, Rows, applied, inverse};
 use crate::segment::{Node, Passage, Plan, aimed, follow, plan, rest_of_contact};
 use crate::{Equations, Event, Failure, Interval, Taylor};
 use retune_model::Side;
@@ -54,7 +53,7 @@ pub struct Closed {
     /// What its equations leave at the nodes themselves.
     pub known: Residual,
     /// The inverse of their derivatives there.
-    pub inverse: Inverse,
+    pub inverse: Rows,
 }
 
 /// `2πn`.
@@ -138,7 +137,7 @@ impl Orbit {
     }
 
     /// The derivatives of the equations by the unknowns: rows of blocks, that of each segment and minus one at the next node.
-    pub fn jacobian(&self, passages: &[Passage]) -> Vec<Vec<Taylor>> {
+    pub fn jacobian(&self, passages: &[Passage]) -> Rows {
         let n = FREE * self.nodes.len();
         let mut all = vec![vec![Taylor::ZERO; n]; n];
         for (k, passage) in passages.iter().enumerate() {
@@ -154,7 +153,7 @@ impl Orbit {
     /// With what the equations leave at the nodes themselves, and the inverse of their derivatives there.
     fn closed(self, equations: &Equations) -> Result<Closed, Failure> {
         let known = self.residual(equations, &vec![Interval::ZERO; FREE * self.nodes.len()])?;
-        let inverse = Inverse::of(&self.jacobian(&known.passages));
+        let inverse = inverse(&self.jacobian(&known.passages));
         let refused = Failure::Guess(self.periods, largest(&known.gaps));
         Ok(Closed { orbit: self, known, inverse: inverse.ok_or(refused)? })
     }
@@ -206,7 +205,7 @@ impl Orbit {
             orbit.closed(equations)
         };
         (0..WIDENED)
-            .try_fold(closed(self)?, |own, _| closed(own.orbit.less(&own.inverse.times(&own.known.gaps))))
+            .try_fold(closed(self)?, |own, _| closed(own.orbit.less(&applied(&own.inverse, &own.known.gaps))))
     }
 
     /// The same, improved by Newton's iteration on the middles of all intervals.
@@ -216,7 +215,7 @@ impl Orbit {
     pub fn improved(self, equations: &Equations) -> Result<Closed, Failure> {
         let (mut own, mut last) = (self.closed(equations)?, f64::INFINITY);
         for _ in 0..ITERATIONS {
-            let change = own.inverse.times(&own.known.gaps);
+            let change = applied(&own.inverse, &own.known.gaps);
             let size = largest(&change);
             if size <= CLOSED || (size < 1e-9 && size >= 0.5 * last) {
                 return Ok(own);

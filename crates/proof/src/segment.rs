@@ -3,11 +3,10 @@
 use crate::crossing::{Section, cross};
 use crate::equations::{Flow, Mode, at};
 use crate::loss::{Factor, touch_down};
-use crate::number::{Family, Number, SPEED, STATE};
+use crate::number::{Block, Family, SPEED, STATE, identity, matrix};
 use crate::range::Range;
-use crate::small::{Block, identity, matrix};
 use crate::step::{ORDER, Piece, Quantity, States, step};
-use crate::{Equations, Event, Failure, Interval, Taylor};
+use crate::{Equations, Event, Failure, Interval, Number, Taylor};
 use retune_model::Side;
 use std::array;
 
@@ -104,8 +103,8 @@ fn sections(Flow { equations, mode }: Flow<'_>, crest: Option<Interval>) -> Vec<
 impl Quantity for Section {
     fn series<T: Number>(&self, _: Mode, motion: &[[T; STATE]]) -> Vec<T> {
         let mut series: Vec<T> = motion.iter().map(|c| c[self.event.fixed()]).collect();
-        series[0] = series[0] - T::constant(self.value);
-        let to_come = |c: T| if self.event.is_rising() { T::constant(Interval::ZERO) - c } else { c };
+        series[0] = series[0] + -T::constant(self.value);
+        let to_come = |c: T| if self.event.is_rising() { -c } else { c };
         series.into_iter().map(to_come).collect()
     }
 }

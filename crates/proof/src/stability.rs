@@ -1,9 +1,8 @@
 //! Whether small changes of a motion die out: its multipliers, the eigenvalues of the product of all segments' derivatives.
 
-use crate::number::FREE;
+use crate::number::{Block, FREE, matrix, times};
 use crate::segment::Passage;
-use crate::small::{Block, matrix, times};
-use crate::{Interval, Taylor};
+use crate::{Failure, Interval, Taylor};
 use nalgebra::{Matrix4, SMatrix};
 use serde::Serialize;
 use std::array;
@@ -27,6 +26,16 @@ pub enum Stability {
     Unstable,
     /// Neither is proven.
     Open,
+}
+
+impl Stability {
+    /// What all multipliers are below.
+    ///
+    /// # Errors
+    /// It is not proven to be stable.
+    pub fn stable(self) -> Result<f64, Failure> {
+        if let Self::Stable(bound) = self { Ok(bound) } else { Err(Failure::NotStable) }
+    }
 }
 
 /// Whether a motion, or each of a family, is stable, from what is known of its segments.

@@ -1,9 +1,10 @@
 //! One validated step of the motions from a set of states, together with their derivatives by the first state.
 
 use crate::equations::{Flow, Mode, at};
-use crate::number::{Family, Gradient, Number, STATE, State};
-use crate::small::{Frame, Matrix, identity, matrix, plus, times, times_vector};
-use crate::{Interval, Taylor};
+use crate::number::{
+    Family, Frame, Gradient, Matrix, STATE, State, identity, matrix, plus, times, times_vector,
+};
+use crate::{Interval, Number, Taylor};
 use std::array;
 
 /// Terms of a Taylor polynomial: the first power that is left out.
@@ -181,15 +182,22 @@ pub(crate) mod tests {
     use crate::range::Range;
     use retune_model::{Scene, Side};
 
+    pub(crate) const SURFACES: &str = r#"{ "R": 2, "q": 0.318, "E1": 2.1e11, "nu1": 0.3, "E2": 2.21e7, "nu2": 0.4,
+        "E3": 2.1e11, "nu3": 0.3, "E4": 2.05e7, "nu4": 0.4 }"#;
+
+    /// The paper's structure with a damper.
+    pub(crate) fn scene_with(damper: &str) -> Scene {
+        let text = format!(
+            r#"{{ "primary": {{ "m1": 1000, "c1": 452, "k1": 39500 }}, "forcing": {{ "P": 800, "omega": 6.28 }}, "damper": {{ {damper} }} }}"#
+        );
+        serde_json::from_str(&text).expect("a scene")
+    }
+
     /// The paper's tuned damper.
     pub(crate) fn scene() -> Equations {
-        let text = r#"{
-            "primary": { "m1": 1000, "c1": 452, "k1": 39500 }, "forcing": { "P": 800, "omega": 6.28 },
-            "damper": { "m2": 60, "k2": 215, "c2": 232, "D": 0.06, "C": 0.36, "contact": { "R": 2, "q": 0.318,
-                "E1": 2.1e11, "nu1": 0.3, "E2": 2.21e7, "nu2": 0.4, "E3": 2.1e11, "nu3": 0.3, "E4": 2.05e7, "nu4": 0.4 } }
-        }"#;
-        let scene: Scene = serde_json::from_str(text).expect("a scene");
-        Equations::new(&scene).expect("equations")
+        let damper =
+            format!(r#""m2": 60, "k2": 215, "c2": 232, "D": 0.06, "C": 0.36, "contact": {SURFACES}"#);
+        Equations::new(&scene_with(&damper)).expect("equations")
     }
 
     /// The states from one state after `n` equal steps, and the motion between.

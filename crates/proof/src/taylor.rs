@@ -86,11 +86,57 @@ impl Taylor {
     fn size(self) -> f64 {
         self.c[..self.used].iter().map(|c| c.abs()).sum()
     }
+}
 
-    /// `1/f` of each function `f`; nothing is known where one may be zero.
-    ///
-    /// With any polynomial `p` and `e = 1 - f p` it is `p/(1 - e)`, which differs from `p` by at most `|p| |e| / (1 - |e|)`.
-    pub fn reciprocal(self) -> Self {
+/// A quantity that sums and products can be taken of.
+pub trait Number: Copy + Add<Output = Self> + Neg<Output = Self> + Mul<Output = Self> {
+    /// A constant.
+    fn constant(value: Interval) -> Self;
+    /// A function of the parameter.
+    fn of(function: Taylor) -> Self;
+    /// A multiple by a constant.
+    fn times(self, factor: Interval) -> Self {
+        self * Self::constant(factor)
+    }
+    /// `[cos x, sin x]`.
+    fn cos_sin(self) -> [Self; 2];
+    /// `1/x`.
+    fn reciprocal(self) -> Self;
+}
+
+impl Number for Interval {
+    fn constant(value: Interval) -> Self {
+        value
+    }
+
+    fn of(function: Taylor) -> Self {
+        function.hull()
+    }
+
+    fn cos_sin(self) -> [Self; 2] {
+        cos_sin(self)
+    }
+
+    fn reciprocal(self) -> Self {
+        Self::ONE / self
+    }
+}
+
+impl Number for Taylor {
+    fn constant(value: Interval) -> Self {
+        Self::from(value)
+    }
+
+    fn of(function: Taylor) -> Self {
+        function
+    }
+
+    fn times(self, factor: Interval) -> Self {
+        if factor == Interval::ONE { self } else { self * Self::from(factor) }
+    }
+
+    /// Nothing is known where one may be zero. With any polynomial `p` and `e = 1 - f p` it is `p/(1 - e)`, which differs from `p` by at most `|p| |e| / (1 - |e|)`.
+    fn reciprocal(self) -> Self {
         let mut c = [0.0; TERMS];
         let used = if self.used > 1 { TERMS } else { 1 };
         c[0] = 1.0 / self.c[0];
@@ -103,8 +149,8 @@ impl Taylor {
         Self { rest, ..p }
     }
 
-    /// `[cos f, sin f]`, by the sums of the value at zero and of the difference from it.
-    pub fn cos_sin(self) -> [Self; 2] {
+    /// By the sums of the value at zero and of the difference from it.
+    fn cos_sin(self) -> [Self; 2] {
         let [c, s] = cos_sin(Interval::point(self.c[0])).map(Self::from);
         let [cos, sin] = near_zero(self - Self::point(self.c[0]), CIRCLE);
         [c * cos - s * sin, s * cos + c * sin]

@@ -32,10 +32,10 @@ fn reference_mpfrs_results_are_enclosed() {
         let numbers: Vec<f64> = numbers.split(',').map(|x| x.parse().expect("a number")).collect();
         let [x, y, down, up] = numbers[..] else { panic!("{line}") };
         let own = of(name, Interval::point(x), Interval::point(y));
-        assert!(own.lo() <= down && up <= own.hi(), "{line}: {own}");
+        assert!(own.lo() <= down && up <= own.hi(), "{line}: {own:?}");
         // And it is narrow: some units in the last place, or some of 1 of an angle.
         let most = if matches!(name, "cos" | "sin") { 1e-15 * (1.0 + x.abs()) } else { 1e-15 * up.abs() };
-        assert!(own.width() <= most, "{line}: {own}");
+        assert!(own.width() <= most, "{line}: {own:?}");
         draws += 1;
     }
     assert!(draws >= 1000, "{draws}");

@@ -1,7 +1,9 @@
 //! What is proven of motions of the paper's dampers, and what is not.
 
-use retune_model::{Coupled, Forcing, NonNegative, Parameter, Scene, Source, Steady};
-use retune_proof::{Failure, Interval, Stability, band, prove};
+use nalgebra::Matrix4;
+use retune_model::{Bare, Coupled, Forcing, NonNegative, Parameter, Scene, Side, Source, Steady};
+use retune_proof::{Event, Failure, Interval, Stability, Start, prove, prove_over, prove_steady};
+use std::f64::consts::TAU;
 
 const STRUCTURE: &str =
     r#""primary": { "m1": 1000, "c1": 452, "k1": 39500 }, "forcing": { "P": 800, "omega": 6.28 }"#;
@@ -89,11 +91,103 @@ fn exact_the_closed_form_of_a_tmd_is_in_the_proven_intervals() {
     }
 }
 
+fn undamped(mut scene: Scene) -> Scene {
+    let zero = NonNegative::new(0.0).expect("zero");
+    scene.primary.damping = zero;
+    scene.damper = scene.damper.map(|damper| retune_model::Damper { damping: zero, ..damper });
+    scene
+}
+
+#[test]
+fn exact_the_closed_form_of_a_structure_alone_is_in_the_proven_intervals() {
+    for source in sources() {
+        let mut scene = Scene { damper: None, ..tmd(6.1) };
+        scene.forcing = Forcing { source, ..scene.forcing };
+        let own = Bare::new(&scene.primary, &scene.forcing).steady(6.1);
+        let proven = prove(&scene, [0.0; 4], 1).expect("a proof");
+        assert!(is_about(proven.largest.energy, own.e1_max, CLOSED), "{proven:?} {own:?}");
+        assert!(proven.events[0].state[0].wider(1e-15).contains(own.x1.re), "{proven:?} {own:?}");
+        assert_eq!((proven.largest.stroke, proven.alone_within), (Interval::ZERO, None));
+    }
+}
+
+/// Without dashpots motions at the natural frequencies go on for ever.
+#[test]
+fn contract_what_is_not_damped_is_not_called_stable() {
+    let proven = prove(&undamped(tmd(6.3)), [0.0; 4], 1).expect("a proof");
+    assert!(proven.stability == Stability::Open && proven.alone_within.is_some(), "{proven:?}");
+    let refused = prove_steady(&undamped(tmd(6.3)), [6.3, 6.4]).expect_err("no rest");
+    assert_eq!(refused, Failure::NotStable);
+}
+
+/// The closed form over a piece holds that at its ends and in between; the piece is short enough for bounds that hold little more.
+#[test]
+fn exact_the_closed_form_of_a_tmd_is_in_the_pieces_in_closed_form() {
+    for source in sources() {
+        for from in [5.0, 5.9, 6.3, 7.3] {
+            let mut scene = tmd(5.0);
+            scene.forcing = Forcing { source, ..scene.forcing };
+            let own = prove_steady(&scene, [from, from + 1e-3]).expect("a proof");
+            for omega in [from, from + 3e-4, from + 1e-3] {
+                let steady = steady(&scene, omega);
+                assert!(is_about(own.largest.energy, steady.e1_max, [0.02, 3e-15]), "{steady:?} {own:?}");
+                assert!(is_about(own.largest.stroke, steady.stroke(), [0.02, 3e-15]), "{steady:?} {own:?}");
+            }
+        }
+    }
+}
+
+/// The eigenvalues of `[[0, 1], [-M⁻¹K, -M⁻¹C]]` in doubles. What rounds them is far below the share by which the bound may be larger.
+#[test]
+fn exact_the_bound_on_the_multipliers_of_a_steady_motion_is_next_to_the_largest() {
+    let [m1, c1, k1] = [1000.0, 452.0, 39500.0];
+    for (m2, c2, k2) in [(60.0, 85.0, 2000.0), (60.0, 259.8, 600.0), (1.0, 0.5, 40.0), (60.0, 5000.0, 600.0)]
+    {
+        let scene = scene(&format!(r#"{{ "m2": {m2}, "k2": {k2}, "c2": {c2} }}"#), 6.1);
+        let rows = [
+            [0.0, 0.0, 1.0, 0.0],
+            [0.0, 0.0, 0.0, 1.0],
+            [-(k1 + k2) / m1, k2 / m1, -(c1 + c2) / m1, c2 / m1],
+            [k2 / m2, -k2 / m2, c2 / m2, -c2 / m2],
+        ];
+        let motion = Matrix4::from_fn(|i, j| rows[i][j]);
+        let slowest =
+            motion.complex_eigenvalues().iter().fold(f64::NEG_INFINITY, |most, x| f64::max(most, x.re));
+        assert_bound(&scene, (slowest * TAU / 6.1).exp());
+    }
+    // Alone it comes to rest with c1/2 m1.
+    assert_bound(&Scene { damper: None, ..tmd(6.1) }, (-c1 / (2.0 * m1) * TAU / 6.1).exp());
+}
+
+fn assert_bound(scene: &Scene, largest: f64) {
+    let Stability::Stable(bound) = prove(scene, [0.0; 4], 1).expect("a proof").stability else { panic!() };
+    assert!(bound > (1.0 - 1e-12) * largest && bound < (1.0 + 1e-7) * largest, "{bound} {largest}");
+    // Over a piece that of its highest frequency, whose period is the shortest.
+    let piece = prove_steady(scene, [6.0, 6.1]).expect("a proof");
+    let Stability::Stable(over) = piece.stability else { panic!() };
+    assert!(over > (1.0 - 1e-12) * bound && over < 1.01 * bound, "{over} {bound}");
+}
+
+/// Walls that the damper touches at some frequency of a piece, or at none.
+#[test]
+fn contract_a_piece_in_closed_form_touches_no_wall() {
+    let stroke = steady(&tmd(6.3), 6.3).stroke();
+    let walled = |d: f64, c: f64| {
+        let damper =
+            format!(r#"{{ "m2": 60, "k2": 2000, "c2": 85, "D": {d}, "C": {c}, "contact": {SURFACES} }}"#);
+        prove_steady(&scene(&damper, 6.3), [6.3, 6.301]).map(|theorem| theorem.impacts)
+    };
+    let (near, far) = (0.9 * stroke, 1.1 * stroke);
+    assert_eq!(walled(far, far), Ok(String::new()));
+    assert_eq!(walled(near, far), Err(Failure::Graze(Event::Touch(Side::Primary))));
+    assert_eq!(walled(far, near), Err(Failure::Graze(Event::Touch(Side::Obstacle))));
+}
+
 #[test]
 fn reference_the_tuned_dampers_motion_at_its_worst_frequency_is_proven() {
     let proven = prove(&tuned(WORST.0), WORST.1, 1).expect("a proof");
     assert_eq!(proven.impacts, "S");
-    assert!(proven.width < 1e-10 && proven.alone_within > 100.0 * proven.width, "{proven:?}");
+    assert!(proven.width < 1e-10 && proven.alone_within > Some(100.0 * proven.width), "{proven:?}");
     // The solver's multiplier, energy, stroke and contact force, from the same line.
     let Stability::Stable(bound) = proven.stability else { panic!("{proven:?}") };
     assert!((0.6602065..0.6603).contains(&bound), "{bound}");
@@ -168,7 +262,7 @@ fn contract_scenes_beyond_the_proof_are_refused() {
     };
     let lossy = SURFACES.replace('}', r#", "loss": { "restitution": 0.1 } }"#);
     for (scene, said) in [
-        (Scene { damper: None, ..tmd(6.0) }, "a scene without damper"),
+        (undamped(Scene { damper: None, ..tmd(6.0) }), "a structure without damper, and without spring"),
         (tmd(0.0), "a forcing whose omega is not above 0"),
         (with(r#"{ "rigid": { "restitution": 0.7 } }"#), "rigid walls"),
         (with(&lossy), "a restitution below 0.2"),
@@ -190,25 +284,26 @@ fn contract_a_box_that_is_not_mapped_into_itself_proves_nothing() {
     }
 }
 
-/// One proof holds for all frequencies of a piece: those of its ends and of one in between are in its bounds.
+/// One proof holds for all frequencies of a piece: those of its ends and of one in between are in its bounds. The next piece is found beside it.
 #[test]
 fn invariant_a_piece_of_a_band_holds_the_motions_at_its_frequencies() {
-    let guess = |_| Some((WORST.1, 1));
-    let found = band(&tuned(6.6), [6.62, 6.64], 226.0, &guess).expect("a scene");
-    assert!(found.left_out.is_empty() && found.pieces.len() < 4, "{found:?}");
-    let ends: Vec<f64> = found.pieces.iter().flat_map(|piece| piece.omega).collect();
-    assert_eq!((ends[0], ends[ends.len() - 1]), (6.62, 6.64));
-    assert!(ends[1..ends.len() - 1].chunks(2).all(|two| two[0] == two[1]), "{ends:?}");
-    for piece in &found.pieces {
-        let [from, to] = piece.omega;
+    let first = prove_over(&tuned(6.6), [6.62, 6.63], Start::From((WORST.1, 1))).expect("a piece");
+    let next = prove_over(&tuned(6.6), [6.63, 6.64], Start::Beside(&first.1)).expect("a piece");
+    for ([from, to], piece) in [([6.62, 6.63], first.0), ([6.63, 6.64], next.0)] {
+        let Stability::Stable(multipliers) = piece.stability else { panic!("{piece:?}") };
         for omega in [from, from + 0.3 * (to - from), to] {
             let own = prove(&tuned(omega), WORST.1, 1).expect("a proof");
+            let Stability::Stable(bound) = own.stability else { panic!("{own:?}") };
             assert_eq!((own.impacts.as_str(), piece.impacts.as_str()), ("S", "S"));
+            // Neither is the largest multiplier, but both are next to it.
+            assert!(multipliers < 1.0 && bound < 1.01 * multipliers, "{bound} {multipliers}");
             for ((_, own), (_, all)) in own.largest.all().into_iter().zip(piece.largest.all()) {
-                assert!(own.is_in(all), "{omega}: {own} {all}");
+                assert!(own.is_in(all), "{omega}: {own:?} {all:?}");
             }
         }
     }
+    let unstable = prove_over(&tuned(7.5), [7.531, 7.532], Start::From((UNSTABLE.1, 1)));
+    assert_eq!(unstable.map(|(theorem, _)| theorem.impacts), Err(Failure::NotStable));
 }
 
 /// What acts changes with the frequency along a piece: of an imbalance and of a base, in three ways.
@@ -217,47 +312,13 @@ fn exact_the_closed_form_of_a_tmd_is_in_the_pieces_of_a_band() {
     for source in sources() {
         let mut scene = tmd(5.0);
         scene.forcing = Forcing { source, ..scene.forcing };
-        let found = band(&scene, [7.0, 7.02], 1e4, &|_| Some(([0.0; 4], 1))).expect("a scene");
-        assert!(found.left_out.is_empty() && found.pieces.len() < 4, "{found:?}");
-        for piece in &found.pieces {
-            for omega in piece.omega {
-                let own = steady(&scene, omega);
-                assert!(
-                    is_about(piece.largest.energy, own.e1_max, [0.1, 3e-15]),
-                    "{omega} {own:?} {piece:?}"
-                );
-                assert!(
-                    is_about(piece.largest.stroke, own.stroke(), [0.1, 3e-15]),
-                    "{omega} {own:?} {piece:?}"
-                );
-            }
+        let (piece, _) = prove_over(&scene, [7.0, 7.01], Start::From(([0.0; 4], 1))).expect("a piece");
+        for omega in [7.0, 7.007, 7.01] {
+            let own = steady(&scene, omega);
+            assert!(is_about(piece.largest.energy, own.e1_max, [0.1, 3e-15]), "{omega} {own:?} {piece:?}");
+            assert!(is_about(piece.largest.stroke, own.stroke(), [0.1, 3e-15]), "{omega} {own:?} {piece:?}");
         }
     }
-}
-
-/// Where nothing is guessed, the motion is proven from beyond it.
-#[test]
-fn invariant_a_motion_is_followed_to_both_sides_of_its_guess() {
-    let guess = |omega| (omega > 6.625).then_some((WORST.1, 1));
-    let found = band(&tuned(6.6), [6.618, 6.64], 226.0, &guess).expect("a scene");
-    assert!(found.left_out.is_empty() && found.pieces.len() < 5, "{found:?}");
-    let ends: Vec<f64> = found.pieces.iter().flat_map(|piece| piece.omega).collect();
-    assert_eq!((ends[0], ends[ends.len() - 1]), (6.618, 6.64));
-    assert!(ends[1..ends.len() - 1].chunks(2).all(|two| two[0] == two[1]), "{ends:?}");
-    assert!(found.pieces.iter().all(|piece| piece.periods == 1 && piece.impacts == "S"), "{found:?}");
-}
-
-/// What is beyond the goal, or has no guess, is left out with its reason, and no more than that.
-#[test]
-fn contract_what_is_not_proven_of_a_band_is_named() {
-    let few = band(&tuned(6.6), [6.62, 6.6202], 225.0, &|_| Some((WORST.1, 1))).expect("a scene");
-    assert!(
-        few.pieces.is_empty() && few.left_out[0].why.to_string().contains("at most 225 J are to be proven"),
-        "{few:?}"
-    );
-    let none = band(&tuned(6.6), [6.0, 6.01], 1e3, &|_| None).expect("a scene");
-    assert_eq!((none.left_out.len(), none.left_out[0].omega), (1, [6.0, 6.01]));
-    assert_eq!(none.left_out[0].why, Failure::NoGuess);
 }
 
 /// λ and the same restitution at every speed; the values are the solver's, `results/ssvi-loss` and `results/ssvi-hedged` with e = 0.6.

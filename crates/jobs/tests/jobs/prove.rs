@@ -1,8 +1,9 @@
 //! `prove`: motions that the solver finds, proven by interval arithmetic.
 
 use retune_jobs::Error;
+use retune_jobs::prove::band::{Band, Guesses, Why, band, steady_band};
 use retune_jobs::prove::{Guess, Proof, prove, prove_band};
-use retune_model::{Finite, Parameter, Start};
+use retune_model::{Bare, Coupled, Finite, Forcing, NonNegative, Parameter, Scene, Source, Start};
 use retune_study::Setting;
 use retune_testkit::observers::{good, refused};
 use serde_json::{Value, json};
@@ -41,7 +42,7 @@ fn reference_the_tuned_dampers_are_proven_at_their_worst_frequencies() {
         for said in [
             "proven by interval arithmetic",
             "repeats after 1 period of the force",
-            "all multipliers are below 0.",
+            "all multipliers are below ",
         ] {
             assert!(words.contains(said), "{words}");
         }
@@ -113,6 +114,10 @@ fn reference_a_band_of_the_tuned_damper_is_proven() {
         proof.to_string().contains("\nevery omega   has a stable motion with an E1max of at most 225."),
         "{proof}"
     );
+    // The TMD touches no wall: bounds of the closed form hold what the search found at its worst frequency.
+    let whole = good(prove_band(&place("results/tmd"), &[], [at(5.0), at(8.0)], f64::INFINITY));
+    let [lo, hi] = [0, 1].map(|i| json!(whole)["E1max"][i].as_f64().expect("a bound"));
+    assert!(lo <= 660.417196785553 && 660.417196785552 <= hi && hi - lo < 1e-5, "{whole}");
     let error = refused(prove_band(&place("results/ssvi"), &[], [at(6.62), at(6.62)], 226.0));
     assert_eq!(
         error.to_string(),
@@ -120,4 +125,105 @@ fn reference_a_band_of_the_tuned_damper_is_proven() {
     );
     let error = refused(prove_band(&place("results/ssvi"), &[], [at(6.62), at(6.6201)], 200.0)).to_string();
     assert!(error.starts_with("study ssvi: not proven: the motion may have an E1max of 225."), "{error}");
+}
+
+/// The structure of the paper with the tuned SSVI NES of `results/ssvi`.
+fn tuned() -> Scene {
+    retune_study::read(&place("results/ssvi")).expect("a study").scene
+}
+
+/// The state of `results/branches/tuned`, branch 0, place 128, at 6.6241 rad/s.
+const NEAR: [f64; 4] = [-0.02820555307031281, 0.6083072322136185, 0.1833641390932657, -1.121482573779919];
+
+fn band_of(omega: [f64; 2], most: f64, guesses: Guesses<'_>) -> Band {
+    band(&tuned(), omega, most, guesses)
+}
+
+/// Pieces and parts left out, in turn: they cover the band.
+fn parts(found: &Band, [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
+    let left_out = found.left_out.iter().map(|part| part.omega);
+    let mut all: Vec<[f64; 2]> = found.pieces.iter().map(|piece| piece.omega).chain(left_out).collect();
+    all.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    assert_eq!((all[0][0], all[all.len() - 1][1]), (from, to));
+    assert!(all.windows(2).all(|two| two[0][1] == two[1][0]), "{all:?}");
+    all
+}
+
+/// Where nothing is guessed, the motion is proven from beyond it.
+#[test]
+fn invariant_a_motion_is_followed_to_both_sides_of_its_guess() {
+    let omega = [6.618, 6.64];
+    let found = band_of(omega, 226.0, &|omega| (omega > 6.625).then_some((NEAR, 1)));
+    assert!(found.left_out.is_empty() && parts(&found, omega).len() < 5, "{found:?}");
+    assert!(found.pieces.iter().all(|piece| piece.periods == 1 && piece.impacts == "S"), "{found:?}");
+}
+
+/// What is beyond the goal, or has no guess, is left out with its reason, and no more than that.
+#[test]
+fn contract_what_is_not_proven_of_a_band_is_named() {
+    let few = band_of([6.62, 6.6202], 225.0, &|_| Some((NEAR, 1)));
+    assert!(
+        few.pieces.is_empty() && few.left_out[0].why.to_string().contains("at most 225 J are to be proven"),
+        "{few:?}"
+    );
+    let none = band_of([6.0, 6.01], 1e3, &|_| None);
+    assert_eq!((none.left_out.len(), none.left_out[0].omega), (1, [6.0, 6.01]));
+    assert_eq!(none.left_out[0].why, Why::NoGuess);
+}
+
+/// A force, an imbalance, and bases of given displacement and acceleration, with a TMD and without.
+fn linear() -> Vec<Scene> {
+    let size = |size: f64| NonNegative::new(size).expect("an amplitude");
+    let sources = [
+        Source::Force(size(30.5)),
+        Source::Imbalance(size(30.5)),
+        Source::Base(size(0.02)),
+        Source::BaseAcceleration(size(0.7)),
+    ];
+    let scene = retune_study::read(&place("results/tmd")).expect("a study").scene;
+    let with = |source| Scene { forcing: Forcing { source, ..scene.forcing }, ..scene };
+    let all = sources.map(with);
+    all.into_iter().chain(all.map(|scene| Scene { damper: None, ..scene })).collect()
+}
+
+/// The bound is next to the largest value in doubles, and holds it; what is left out has more, but for its ends.
+#[test]
+fn exact_the_closed_form_of_linear_scenes_is_in_a_whole_band() {
+    for scene in linear() {
+        let Scene { primary, forcing, damper } = &scene;
+        let (system, bare) =
+            (damper.as_ref().map(|own| Coupled::new(primary, forcing, own)), Bare::new(primary, forcing));
+        let at =
+            |omega: f64| system.as_ref().map_or(bare.steady(omega).e1_max, |own| own.steady(omega).e1_max);
+        let worst =
+            system.as_ref().map_or(bare.steady_e1_max([5.0, 8.0]), |own| own.steady_e1_max([5.0, 8.0]));
+        for (most, is_whole) in [(f64::INFINITY, true), (0.5 * worst.value, false)] {
+            let found = steady_band(&scene, [5.0, 8.0], most).expect("a scene").expect("no wall");
+            assert!(found.left_out.is_empty() == is_whole && parts(&found, [5.0, 8.0]).len() < 400);
+            let all = found.energy();
+            assert!(all.hi() <= most && all.wider(3e-15 * worst.value).hi() >= worst.value.min(most * 0.999));
+            assert!(!is_whole || all.hi() < (1.0 + 2e-9) * worst.value, "{all:?} {worst:?}");
+            for piece in &found.pieces {
+                assert!(piece.multipliers < 1.0);
+                for omega in piece.omega {
+                    let own = at(omega);
+                    assert!(piece.largest.energy.wider(3e-15 * own).contains(own), "{own} {piece:?}");
+                }
+            }
+            for part in &found.left_out {
+                assert!(at(0.5 * (part.omega[0] + part.omega[1])) > (1.0 - 1e-3) * most, "{part:?}");
+            }
+        }
+    }
+}
+
+/// Without dashpots, and where a wall is struck at some of the frequencies, the closed form is not that of the motion.
+#[test]
+fn contract_a_band_in_closed_form_has_dashpots_and_no_impacts() {
+    let zero = NonNegative::new(0.0).expect("zero");
+    let mut scene = linear()[0];
+    scene.primary.damping = zero;
+    scene.damper = scene.damper.map(|damper| retune_model::Damper { damping: zero, ..damper });
+    assert!(steady_band(&scene, [6.3, 6.4], 1e9).expect("a scene").is_none());
+    assert!(steady_band(&tuned(), [6.3, 6.4], 1e9).expect("a scene").is_none());
 }

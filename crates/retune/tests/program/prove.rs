@@ -23,7 +23,6 @@ fn contract_prove_shows_the_theorem_in_words_and_as_json() {
     for key in [
         "/omega",
         "/periods",
-        "/alone_within",
         "/width",
         "/events/0/phase/0",
         "/events/0/state/3/1",
@@ -34,6 +33,8 @@ fn contract_prove_shows_the_theorem_in_words_and_as_json() {
     ] {
         assert!(answer.pointer(key).is_some_and(Value::is_number), "{key}");
     }
+    // No box: no other motion that touches no wall repeats.
+    assert_eq!(answer.pointer("/alone_within"), Some(&Value::Null));
     assert!(words.contains(&answer["largest"]["E1max"][1].to_string()), "{words}");
     // Any guess will do where there is one motion only.
     let from = ["prove", "tmd.json", "--omega", "57.3rpm", "--from", "0.1,-0.2,0.3,0"];
