@@ -1,5 +1,6 @@
 //! Contacts computed at once beside the same contacts followed step by step.
 
+use super::bends::Bends;
 use super::response::Collisions;
 use crate::budget::{Budget, Pace};
 use crate::contact::regularised::integrate::{End, integrate};
@@ -9,7 +10,8 @@ use crate::motion::segment::Segment;
 use crate::observe::observer::{Observer, Unobserved};
 use crate::response::Work;
 use crate::system::LinearSystem;
-use retune_model::{Coupled, Side};
+use retune_model::{Coupled, Of, Samples, Side};
+use retune_testkit::histories::record;
 
 use retune_testkit::scenes::{Numbers, SSVI};
 
@@ -48,12 +50,22 @@ fn touch_down(draw: &mut Draw, system: &Coupled) -> (Side, Knot<4>) {
 
 fn step_by_step(system: &Coupled, side: Side, touch: &Knot<4>) -> Knot<4> {
     let equations = system.regularised_contact(side);
-    let regularised = equations.regularise(&touch.y);
+    let mut regularised = equations.regularise(&touch.y);
     let budget = Budget::new(Pace::Steps, 100_000, Work::default(), [0.0, 1e9]);
     let (limits, mut work) = ((1e-13, budget, f64::INFINITY), Work::default());
-    match integrate(equations, touch, regularised, 1e9, limits, &mut work, &mut Unobserved) {
-        Ok(End::LiftOff(end)) => end,
-        _ => panic!("no lift-off"),
+    let mut from = *touch;
+    loop {
+        // It begins anew where the force bends.
+        let to = system.bare().stretch(from.t).map_or(1e9, |stretch| stretch.to.min(1e9));
+        match integrate(equations.clone(), &from, regularised, to, limits, &mut work, &mut Unobserved) {
+            Ok(End::LiftOff(end)) => return end,
+            Ok(End::InContact(end)) => {
+                regularised = equations.regularise(&end.y);
+                regularised[0] = end.clock[0];
+                from = Knot { excitation: system.excitation(to), ..end };
+            }
+            Err(_) => panic!("no lift-off"),
+        }
     }
 }
 
@@ -61,7 +73,7 @@ fn step_by_step(system: &Coupled, side: Side, touch: &Knot<4>) -> Knot<4> {
 fn at_once(system: &Coupled, side: Side, touch: Knot<4>, rtol: f64) -> Option<f64> {
     let flow = Flow::new(LinearSystem::linear(system), 1.0);
     let collisions = Collisions::new(system, side, &flow, rtol);
-    let (Knot { t, y, .. }, _) = collisions.collide(&flow, touch, 1e9, &mut Unobserved)?;
+    let (Knot { t, y, .. }, _) = collisions.collide(&flow, touch, 1e9, &Bends::NONE, &mut Unobserved)?;
     let expected = step_by_step(system, side, &touch);
     let speed = (touch.y[3] - touch.y[1]).abs();
     let velocity = (y[1] - expected.y[1]).abs().max((y[3] - expected.y[3]).abs()) / speed;
@@ -146,6 +158,67 @@ fn regress_one_lucky_step_is_no_convergence() {
     }
 }
 
+/// Contacts drawn at random under a record with samples some `apart` durations of the contact from one another: how many of 100 are computed at
+/// once, and how far one is from steps at most, over the error allowed.
+fn across_samples(of: Of, apart: f64, rtol: f64, change: impl Fn(Numbers) -> Numbers) -> (usize, f64) {
+    let mut draw = Draw(7);
+    let (mut taken, mut worst) = (0, 0.0_f64);
+    for _ in 0..100 {
+        let drawn = change(numbers(&mut draw));
+        let (side, touch) = touch_down(&mut draw, &drawn.coupled());
+        let flow = Flow::new(LinearSystem::linear(&drawn.coupled()), 1.0);
+        let latest = Collisions::new(&drawn.coupled(), side, &flow, rtol).latest_end(&touch);
+        let duration = 0.5 * (latest - touch.t);
+        let step = apart * duration * draw.between(0.8, 1.2);
+        let size = if of == Of::Force { 1000.0 } else { 1.0 };
+        let values = (0..200).map(|_| size * draw.between(-1.0, 1.0)).collect();
+        let samples = Samples::every(0.0, step, values).expect("a record");
+        let scene = drawn.under(record(of, samples));
+        let system = Coupled::new(&scene.primary, &scene.forcing, &scene.damper.expect("a damper"));
+        let t = step * draw.between(0.0, 2.0);
+        let touch = Knot { t, excitation: system.excitation(t), ..touch };
+        let (flow, mut bends) = (Flow::new(LinearSystem::linear(&system), 1.0), Bends::NONE);
+        let collisions = Collisions::new(&system, side, &flow, rtol);
+        let (mut stretch, mut until) = (system.bare().stretch(t).expect("a record"), 0.0);
+        while until < collisions.latest_end(&touch) {
+            let next = system.bare().stretch(stretch.to).expect("a record");
+            bends.push(stretch.to - t, next.begin[1] - stretch.begin[1]);
+            (stretch, until) = (next, next.to);
+        }
+        let at_once = collisions.collide(&flow, touch, until, &bends, &mut Unobserved);
+        let Some((end, _)) = at_once else { continue };
+        taken += 1;
+        let expected = step_by_step(&system, side, &touch);
+        let speed = (touch.y[3] - touch.y[1]).abs();
+        let off = |i: usize| (end.y[i] - expected.y[i]).abs() / speed;
+        let error = off(1).max(off(3)).max((end.t - expected.t).abs() / (expected.t - touch.t));
+        worst = worst.max(error / (10.0 * rtol).max(3e-11));
+    }
+    (taken, worst)
+}
+
+#[test]
+fn reference_contacts_across_samples_agree_with_contacts_step_by_step() {
+    let lossy = |numbers| Numbers { e: 0.7, ..numbers };
+    for (of, apart, rtol, taken_at_least) in [
+        (Of::Force, 0.15, 1e-6, 60),
+        (Of::Force, 0.5, 1e-8, 20),
+        (Of::Force, 1.2, 1e-8, 40),
+        (Of::Force, 1.2, 1e-10, 1),
+        (Of::BaseAcceleration, 0.15, 1e-6, 80),
+        (Of::BaseAcceleration, 0.15, 1e-10, 10),
+        (Of::BaseAcceleration, 0.5, 1e-8, 80),
+        (Of::BaseAcceleration, 1.2, 1e-10, 60),
+    ] {
+        for (taken, worst) in
+            [across_samples(of, apart, rtol, |numbers| numbers), across_samples(of, apart, rtol, lossy)]
+        {
+            assert!(taken >= taken_at_least, "{of:?} {apart}: only {taken} of 100 contacts at rtol {rtol:e}");
+            assert!(worst <= 1.5, "{of:?} {apart}: {worst} times the error allowed at rtol {rtol:e}");
+        }
+    }
+}
+
 /// Keeps the largest distance of what it sees from the motion followed step by step.
 struct Compare<'a> {
     system: &'a Coupled,
@@ -218,7 +291,7 @@ fn inside(numbers: Numbers, rtol: f64, pieces: usize, allowed: f64) {
         let touch = Knot { t: 0.3, excitation: system.excitation(0.3), y, clock: [1.0, 0.0] };
         let collisions = Collisions::new(&system, side, &flow, rtol);
         let mut compare = Compare { system: &system, side, touch, worst: 0.0, pieces: 0 };
-        collisions.collide(&flow, touch, 1e9, &mut compare).expect("an ordinary contact");
+        collisions.collide(&flow, touch, 1e9, &Bends::NONE, &mut compare).expect("an ordinary contact");
         assert!(compare.pieces >= pieces, "{}", compare.pieces);
         assert!(compare.worst < allowed, "{:e} at rtol {rtol:e}", compare.worst);
     }
@@ -235,7 +308,9 @@ fn contract_states_that_are_no_collision_are_declined() {
         y: [0.0, speed, 0.0, 0.0],
         clock: [1.0, 0.0],
     };
-    let taken = |speed: f64, to: f64| collisions.collide(&flow, at(speed), to, &mut Unobserved).is_some();
+    let taken = |speed: f64, to: f64| {
+        collisions.collide(&flow, at(speed), to, &Bends::NONE, &mut Unobserved).is_some()
+    };
     assert!(taken(1.0, 1.0), "an ordinary contact");
     for speed in [0.0, -1.0, 1e-9, f64::NAN, f64::INFINITY] {
         assert!(!taken(speed, 1.0), "a speed of {speed}");
