@@ -2,7 +2,8 @@
 //!
 //! Without contact, a jump `g` of the force's partner (see `retune_model::Excitation`) at the time `b` adds `g r(t - b)` to the motion from then
 //! on, with the response `r` to a partner of 1, whose depth begins like `(t - b)³`, or later where the base moves. So the motion without contact
-//! is still exact. The force of the contact is no polynomial there, but nearly one: what that costs is estimated by [`Added::kink`].
+//! is still exact. The force of the contact is no polynomial there, but nearly one: what that costs follows from [`Added::kink`]
+//! (see `solve::KINK`).
 
 use super::nodes::{Nodes, at_nodes};
 use crate::linear::flow::Expansion;
@@ -88,10 +89,11 @@ impl Added<'_> {
         all.map(|&[time, jump]| jump * self.one.at((elapsed - time).max(0.0))).sum()
     }
 
-    /// A bound on it `duration` seconds after every bend that lies in a contact of so many seconds.
-    pub fn kink(&self, duration: f64) -> f64 {
-        let sizes = Polynomial(self.one.0.map(|block| block.abs())).at(duration);
+    /// A bound on the cubes `(t - b)³` that the bends in a contact of `duration` seconds add by its end, with a share of all higher powers.
+    pub fn kink(&self, duration: f64, share: f64) -> f64 {
+        let cube = self.one.coefficient(3).abs() * duration.powi(3);
+        let all = Polynomial(self.one.0.map(|block| block.abs())).at(duration);
         let within = self.bends.all().iter().filter(|[time, _]| *time < duration);
-        within.map(|[_, jump]| jump.abs() * sizes).sum()
+        within.map(|[_, jump]| jump.abs() * (cube + share * (all - cube))).sum()
     }
 }

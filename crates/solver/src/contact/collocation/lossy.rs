@@ -17,7 +17,7 @@ use super::nodes::{Nodes, at_nodes, dot, product};
 use super::response::{Collisions, FREE};
 use super::rule::Rule;
 use super::solve::{
-    Found, MAX_ITERATIONS, Pushed, error, free_terms, relative_position, relative_velocity, size,
+    FLAT, Found, MAX_ITERATIONS, Pushed, error, free_terms, relative_position, relative_velocity, size,
 };
 use super::unit_law::UnitLaw;
 use crate::motion::knot::Knot;
@@ -176,7 +176,7 @@ impl Collisions {
             if size * gains <= 0.3 * self.rtol {
                 let Motion { depths, .. } = contact.motion(unknowns.1, moments, last);
                 let duration = unknowns.1 * undisturbed;
-                let kink = contact.bent[0].kink(duration);
+                let kink = of.kink * contact.bent[0].kink(duration, FLAT / N as f64);
                 let error = error(rule, &unknowns.0, of.tail, kink);
                 let is_right = error <= self.rtol && touch.t + duration < to;
                 return is_right.then_some(Found { depth, terms, depths, duration, iterations });

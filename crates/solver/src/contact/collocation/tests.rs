@@ -1,5 +1,8 @@
 //! Contacts computed at once beside the same contacts followed step by step.
 
+mod bends;
+mod kinks;
+
 use super::bends::Bends;
 use super::response::Collisions;
 use crate::budget::{Budget, Pace};
@@ -10,8 +13,7 @@ use crate::motion::segment::Segment;
 use crate::observe::observer::{Observer, Unobserved};
 use crate::response::Work;
 use crate::system::LinearSystem;
-use retune_model::{Coupled, Of, Samples, Side};
-use retune_testkit::histories::record;
+use retune_model::{Coupled, Side};
 
 use retune_testkit::scenes::{Numbers, SSVI};
 
@@ -155,67 +157,6 @@ fn regress_one_lucky_step_is_no_convergence() {
     for (e, rtol) in [(0.9, 1e-8), (0.9, 1e-9), (0.75, 1e-9), (0.75, 1e-10)] {
         let (_, worst) = drawn(2000, rtol, |numbers| Numbers { e, ..numbers });
         assert!(worst <= 10.0 * rtol, "e = {e}: {worst:e} at rtol {rtol:e}");
-    }
-}
-
-/// Contacts drawn at random under a record with samples some `apart` durations of the contact from one another: how many of 100 are computed at
-/// once, and how far one is from steps at most, over the error allowed.
-fn across_samples(of: Of, apart: f64, rtol: f64, change: impl Fn(Numbers) -> Numbers) -> (usize, f64) {
-    let mut draw = Draw(7);
-    let (mut taken, mut worst) = (0, 0.0_f64);
-    for _ in 0..100 {
-        let drawn = change(numbers(&mut draw));
-        let (side, touch) = touch_down(&mut draw, &drawn.coupled());
-        let flow = Flow::new(LinearSystem::linear(&drawn.coupled()), 1.0);
-        let latest = Collisions::new(&drawn.coupled(), side, &flow, rtol).latest_end(&touch);
-        let duration = 0.5 * (latest - touch.t);
-        let step = apart * duration * draw.between(0.8, 1.2);
-        let size = if of == Of::Force { 1000.0 } else { 1.0 };
-        let values = (0..200).map(|_| size * draw.between(-1.0, 1.0)).collect();
-        let samples = Samples::every(0.0, step, values).expect("a record");
-        let scene = drawn.under(record(of, samples));
-        let system = Coupled::new(&scene.primary, &scene.forcing, &scene.damper.expect("a damper"));
-        let t = step * draw.between(0.0, 2.0);
-        let touch = Knot { t, excitation: system.excitation(t), ..touch };
-        let (flow, mut bends) = (Flow::new(LinearSystem::linear(&system), 1.0), Bends::NONE);
-        let collisions = Collisions::new(&system, side, &flow, rtol);
-        let (mut stretch, mut until) = (system.bare().stretch(t).expect("a record"), 0.0);
-        while until < collisions.latest_end(&touch) {
-            let next = system.bare().stretch(stretch.to).expect("a record");
-            bends.push(stretch.to - t, next.begin[1] - stretch.begin[1]);
-            (stretch, until) = (next, next.to);
-        }
-        let at_once = collisions.collide(&flow, touch, until, &bends, &mut Unobserved);
-        let Some((end, _)) = at_once else { continue };
-        taken += 1;
-        let expected = step_by_step(&system, side, &touch);
-        let speed = (touch.y[3] - touch.y[1]).abs();
-        let off = |i: usize| (end.y[i] - expected.y[i]).abs() / speed;
-        let error = off(1).max(off(3)).max((end.t - expected.t).abs() / (expected.t - touch.t));
-        worst = worst.max(error / (10.0 * rtol).max(3e-11));
-    }
-    (taken, worst)
-}
-
-#[test]
-fn reference_contacts_across_samples_agree_with_contacts_step_by_step() {
-    let lossy = |numbers| Numbers { e: 0.7, ..numbers };
-    for (of, apart, rtol, taken_at_least) in [
-        (Of::Force, 0.15, 1e-6, 60),
-        (Of::Force, 0.5, 1e-8, 20),
-        (Of::Force, 1.2, 1e-8, 40),
-        (Of::Force, 1.2, 1e-10, 1),
-        (Of::BaseAcceleration, 0.15, 1e-6, 80),
-        (Of::BaseAcceleration, 0.15, 1e-10, 10),
-        (Of::BaseAcceleration, 0.5, 1e-8, 80),
-        (Of::BaseAcceleration, 1.2, 1e-10, 60),
-    ] {
-        for (taken, worst) in
-            [across_samples(of, apart, rtol, |numbers| numbers), across_samples(of, apart, rtol, lossy)]
-        {
-            assert!(taken >= taken_at_least, "{of:?} {apart}: only {taken} of 100 contacts at rtol {rtol:e}");
-            assert!(worst <= 1.5, "{of:?} {apart}: {worst} times the error allowed at rtol {rtol:e}");
-        }
     }
 }
 
