@@ -79,8 +79,11 @@ fn off(
     Some((off(1).max(off(3)).max((end.t - expected.t).abs() / (expected.t - touch.t)), is_bent))
 }
 
+/// Draws a restitution and a λ.
+type Drawn = fn(&mut Draw) -> [f64; 2];
+
 /// What contacts lose, by name.
-const LOSSES: [(&str, fn(&mut Draw) -> [f64; 2]); 3] = [
+const LOSSES: [(&str, Drawn); 3] = [
     ("none", |_| [1.0, 0.0]),
     ("a restitution", |draw| [[0.4, 0.55, 0.7, 0.85, 0.95][(5.0 * draw.next()) as usize], 0.0]),
     ("λ", |draw| [1.0, 10f64.powf(draw.between(-2.0, 0.0))]),
@@ -98,7 +101,6 @@ struct Seen {
 /// tolerance, eight above three times and none above 7.2 times, no larger shares than of those within a piece. With a share of the expansion's tail
 /// as the limit, and of the same size for each loss, errors of 20 times the tolerance were seen in 3000.
 #[test]
-#[expect(clippy::print_stdout, reason = "a measurement is printed")]
 fn reference_contacts_across_samples_agree_with_contacts_step_by_step() {
     let count = std::env::var("RETUNE_CONTACTS").map_or(3000, |count| count.parse().expect("a number")) / 21;
     let mut draw = Draw(7);

@@ -40,7 +40,7 @@ fn exactly(law: &UnitLaw, duration: f64, bend: Bend) -> [f64; 2] {
         let bent = bend.bend(t / duration) / (duration * duration);
         [0.5 * w, -1.25 * q.powi(4) * factor, q, q * v, q * (bent - 1.25 * pushed)]
     };
-    let advance = |y: &[f64; 5], h: f64| dop853::step(&slope, y, &slope(y), h).y;
+    let advance = |y: &[f64; 5], h: f64| dop853::step(slope, y, &slope(y), h).y;
     // From touch-down to the bend, and from there, where all are smooth, to the end.
     let (mut y, mut is_bent) = ([0.0, 1.0, 0.0, 0.0, 0.0], false);
     loop {
