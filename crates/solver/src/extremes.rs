@@ -3,6 +3,7 @@
 
 use crate::energy_bound;
 use crate::error::SolverError;
+use crate::linear::pieces::Block;
 use crate::linear::steps::Steps;
 use crate::motion::segment::Segment;
 use crate::observe::displacement_range::DisplacementRange;
@@ -252,6 +253,14 @@ impl Observer<4> for Peak<'_> {
             Self::Energy(e1) => e1.steps(steps),
             Self::Motion(size) => size.steps(steps),
             Self::Damper(range, _) => range.steps(steps),
+        }
+    }
+    #[inline(always)]
+    fn skips(&self, block: &Block<4>) -> bool {
+        match self {
+            Self::Energy(e1) => e1.skips(block),
+            Self::Motion(size) => size.skips(block),
+            Self::Damper(range, _) => range.skips(block),
         }
     }
     fn impact(&mut self, impact: &Impact<4>) {

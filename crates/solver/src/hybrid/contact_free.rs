@@ -6,7 +6,7 @@
 use crate::budget::Budget;
 use crate::error::SolverError;
 use crate::linear::flow::Flow;
-use crate::linear::pieces::{clock, forces, in_steps};
+use crate::linear::pieces::{Block, PIECES, clock, forces, in_steps};
 use crate::linear::reduced::Reduced;
 use crate::linear::steps::{Step, StepClock, Steps};
 use crate::motion::knot::Knot;
@@ -93,7 +93,25 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
         let Some(force) = self.samples else { return Ok(()) };
         let Some(mut i) = force.at(self.now.t) else { return Ok(()) };
         let growth = LANES as f64 * self.flow.step() * self.system.energy_norm_growth();
+        // After pieces that were looked at one by one, so many are, before others are tried together.
+        let mut together = i;
         while let Some(forces) = forces(&force, i, to) {
+            if i >= together {
+                let growth = growth * (PIECES / LANES) as f64;
+                let energy = self.system.energy_norm(&self.now.y) + growth;
+                let block = Block::new(&self.flow, &force, i, to, &self.now.y, energy);
+                together = i + PIECES;
+                if let Some(block) = block.filter(|block| observer.skips(block)) {
+                    i = together;
+                    self.work.steps += PIECES as u64;
+                    (self.now.t, self.now.y) = (block.end, block.last());
+                    budget.check(&self.work, self.now.t)?;
+                    if !self.now.y.iter().all(|v| v.is_finite()) {
+                        return Err(SolverError::NonFinite { t: self.now.t });
+                    }
+                    continue;
+                }
+            }
             let energy = self.system.energy_norm(&self.now.y) + growth;
             let steps = Steps::bent(&self.flow, self.now, &forces, clock(&force, i), energy);
             observer.steps(&steps);

@@ -22,6 +22,7 @@ impl Hybrid<'_> {
     ) -> Result<Motion, SolverError> {
         self.flow.check_step(from.t, to)?;
         self.budget = Budget::new(self.flow.pace(), self.max_steps, self.work, [from.t, to]);
+        self.end = to;
         if self.system.bare().history().is_none() {
             return self.within(from, to, observer);
         }
@@ -38,11 +39,12 @@ impl Hybrid<'_> {
             if end >= to || observer.satisfied() {
                 return Ok(now);
             }
-            now.t = end;
+            // A contact may have led beyond it.
+            now.t = now.t.max(end);
         }
     }
 
-    /// The same while the force neither jumps nor bends.
+    /// The same while the force neither jumps nor bends. A contact that ends after `to` stops it there, at lift-off.
     #[inline(always)]
     fn within(
         &mut self,
@@ -76,14 +78,15 @@ impl Hybrid<'_> {
                     if touch.t > from.t || closing > 0.0 {
                         observer.touch_down(touch.t, side);
                     }
-                    if let Some((end, evaluations)) =
-                        self.collisions[side as usize].collide(&self.flow, touch, to, observer)
-                    {
+                    let (bends, until) = self.bends(side, &touch);
+                    let at_once =
+                        self.collisions[side as usize].collide(&self.flow, touch, until, &bends, observer);
+                    if let Some((end, evaluations)) = at_once {
                         self.work.steps += 1;
                         self.work.evaluations += evaluations;
                         now = end;
                         phase = Phase::Leaving(side);
-                        if observer.satisfied() {
+                        if observer.satisfied() || now.t >= to {
                             return stopped(now, phase);
                         }
                         continue;

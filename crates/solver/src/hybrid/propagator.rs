@@ -67,12 +67,16 @@ pub struct Hybrid<'a> {
     pub(super) rigid: Option<Box<RigidWalls>>,
     /// `|d⁴r/dt⁴| <= fourth[0] e + fourth[1]` at energy norm `e` (√J), m/s⁴; see [`derivative_bounds`].
     pub(super) fourth: [f64; 2],
+    /// The same of the second derivative, m/s².
+    pub(super) second: [f64; 2],
     pub(super) rtol: f64,
     pub(super) max_steps: u64,
     /// The record, if the flow takes a step for each of its pieces.
     pub(super) samples: Option<EvenForce>,
     /// The stretch of time that the motion is in, of a force that has several.
     pub(super) stretch: Option<Stretch>,
+    /// The end of what is being followed, s.
+    pub(super) end: f64,
     pub(super) budget: Budget,
     /// Work done so far.
     pub work: Work,
@@ -102,7 +106,7 @@ impl<'a> Hybrid<'a> {
         let linear = system.linear();
         let longest = system.bare().even_force().map_or(longest, |force| longest.min(force.even[1]));
         let flow = Flow::new(linear, longest);
-        let step = flow.step();
+        let (step, bounds) = (flow.step(), derivative_bounds::<_, 4, 5>(system, STROKE));
         Self {
             system,
             collisions: Side::BOTH.map(|side| Collisions::new(system, side, &flow, rtol)),
@@ -111,11 +115,13 @@ impl<'a> Hybrid<'a> {
             rigid: RigidWalls::of(system, longest).map(Box::new),
             flow,
             contacts: Side::BOTH.map(|side| system.regularised_contact(side)),
-            fourth: derivative_bounds::<_, 4, 5>(system, STROKE)[4],
+            fourth: bounds[4],
+            second: bounds[2],
             rtol,
             max_steps,
             samples: in_steps(system.bare().even_force(), step),
             stretch: None,
+            end: f64::INFINITY,
             work: Work::default(),
         }
     }

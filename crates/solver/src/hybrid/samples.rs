@@ -1,14 +1,41 @@
-//! Flight over the samples of an equidistant record, four of its pieces side by side.
+//! Flight over the samples of an equidistant record, four of its pieces side by side, and contacts that span samples of any record.
 
 use super::propagator::{Hybrid, Motion, Phase};
+use crate::contact::collocation::bends::Bends;
 use crate::error::SolverError;
-use crate::linear::pieces::{clock, forces};
+use crate::linear::pieces::{Block, PIECES, clock, forces};
 use crate::linear::steps::Steps;
 use crate::motion::knot::Knot;
 use crate::motion::lanes::LANES;
 use crate::observe::observer::Observer;
+use retune_model::{EvenForce, Side};
+use wide::f64x4;
+
+/// By how much of the largest force two pieces of a record may differ where they meet, as rounding leaves it. More is a jump.
+const JUMP: f64 = 1e-12;
 
 impl Hybrid<'_> {
+    /// Where the force bends in a contact that begins at `touch`, and up to when it neither jumps nor bends anywhere else, s.
+    pub(super) fn bends(&self, side: Side, touch: &Knot<4>) -> (Bends, f64) {
+        let (bare, mut bends) = (self.system.bare(), Bends::NONE);
+        let Some(mut stretch) = self.stretch else { return (bends, self.end) };
+        let returns = bare.turning()[1];
+        let latest = self.collisions[side as usize].latest_end(touch);
+        let jump = JUMP * bare.force_bounds()[0];
+        // Of a contact that is none, the end is NaN.
+        while returns == 0.0 && stretch.to < self.end && stretch.to < latest {
+            let Some(next) = bare.stretch(stretch.to) else { break };
+            let before = bare.excitation_in(&stretch, stretch.to);
+            let bend = next.begin[1] - before[1];
+            let jumps = (next.begin[0] - before[0]).abs() > jump;
+            if jumps || !bends.push(stretch.to - touch.t, bend) {
+                break;
+            }
+            stretch = next;
+        }
+        (bends, stretch.to.min(self.end))
+    }
+
     /// Flies from a sample over whole pieces of the record, as far as no wall is near, at most to time `to`.
     #[inline(always)]
     pub(super) fn over_samples(
@@ -21,7 +48,18 @@ impl Hybrid<'_> {
         let Some(mut i) = force.at(from.t) else { return Ok(from) };
         let mut now = Knot { t: from.t, excitation: [0.0; 2], y: from.y, clock: [1.0, 0.0] };
         let growth = LANES as f64 * self.flow.step() * self.system.energy_norm_growth();
+        // After pieces that were looked at one by one, so many are, before others are tried together.
+        let mut together = i;
         while let Some(forces) = forces(&force, i, to) {
+            if i >= together {
+                if let Some((end, y)) = self.pass(&force, i, &now.y, to, observer) {
+                    (now.t, now.y, i, together) = (end, y, i + PIECES, i + PIECES);
+                    self.work.steps += PIECES as u64;
+                    self.budget.check(&self.work, now.t)?;
+                    continue;
+                }
+                together = i + PIECES;
+            }
             let energy = self.system.energy_norm(&now.y);
             if !energy.is_finite() {
                 return Err(SolverError::NonFinite { t: now.t });
@@ -42,5 +80,25 @@ impl Hybrid<'_> {
             }
         }
         Ok(Motion { t: now.t, y: now.y, phase: Phase::Flight })
+    }
+
+    /// The end of many pieces from sample `i` on, and the state there, if provably no wall is near in them, nor anything to observe.
+    #[inline(always)]
+    fn pass(
+        &self,
+        force: &EvenForce,
+        i: usize,
+        y: &[f64; 4],
+        to: f64,
+        observer: &impl Observer<4>,
+    ) -> Option<(f64, [f64; 4])> {
+        let growth = PIECES as f64 * self.flow.step() * self.system.energy_norm_growth();
+        let energy = self.system.energy_norm(y) + growth;
+        let block = Block::new(&self.flow, force, i, to, y, energy)?;
+        let stroke = |_: &[f64x4; 2], y: &[f64x4; 4]| y[2] - y[0];
+        let [near, far] = block.range(stroke, self.second[0] * energy + self.second[1]);
+        let [wall, obstacle] = Side::BOTH.map(|side| self.system.wall(side));
+        let is_open = near > wall && far < obstacle;
+        (is_open && observer.skips(&block)).then(|| (block.end, block.last()))
     }
 }

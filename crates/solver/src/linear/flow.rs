@@ -278,6 +278,11 @@ impl<const N: usize> Flow<N> {
         Stride { excitation: [cos * c - sin * s, cos * s + returning * c], y: next }
     }
 
+    /// The motion over the next step where the force's partner has just jumped by 1 N: what a bend of a force that is linear in time adds.
+    pub fn bend(&self) -> &Expansion<N> {
+        &self.forced[1]
+    }
+
     /// The force `s` seconds later, `0 <= s <= step`.
     #[inline(always)]
     pub fn excitation_after(&self, excitation: Excitation, s: f64) -> Excitation {

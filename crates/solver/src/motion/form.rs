@@ -22,6 +22,8 @@ pub struct Form<const N: usize> {
     rest: [f64; N],
     /// Coefficients `[b0, b1, b2]` of a bound in flight, see [`Form::sixth_in_flight`].
     sixth: [f64; 3],
+    /// Those of a bound on the second derivative in flight.
+    second: [f64; 3],
     /// Those of a bound on the quantity itself, see [`Form::most`].
     most: [f64; 3],
     slope: SlopeInFlight<N>,
@@ -93,7 +95,7 @@ fn unit<const N: usize>(i: usize) -> [f64; N] {
 impl<const N: usize> Form<N> {
     /// `row · d`.
     pub fn linear<S: LinearSystem<N>>(system: &S, row: [f64; N]) -> Self {
-        let [.., [slope, offset]] = derivative_bounds::<S, N, 7>(system, row);
+        let [_, _, [bend, driven], .., [slope, offset]] = derivative_bounds::<S, N, 7>(system, row);
         let (squares, rest) = ([(0.0, row); 2], system.linear().origin);
         let at_rest = row.iter().zip(rest).map(|(weight, rest)| weight * rest).sum();
         Self {
@@ -103,6 +105,7 @@ impl<const N: usize> Form<N> {
             squares,
             rest,
             sixth: [offset, slope, 0.0],
+            second: [driven, bend, 0.0],
             slope: SlopeInFlight::new(system, &row, &squares),
         }
     }
@@ -110,8 +113,9 @@ impl<const N: usize> Form<N> {
     /// `row · d + rated · d'`.
     pub fn rated<S: LinearSystem<N>>(system: &S, row: [f64; N], rated: [f64; N]) -> Self {
         let of_row = Self::linear(system, row);
-        let [.., [slope, offset]] = derivative_bounds::<S, N, 8>(system, rated);
-        let [b0, b1, b2] = of_row.sixth;
+        let [_, _, _, bends, .., sevenths] = derivative_bounds::<S, N, 8>(system, rated);
+        let with = |[b0, b1, b2]: [f64; 3], [slope, offset]: [f64; 2]| [b0 + offset, b1 + slope, b2];
+        let (sixth, second) = (with(of_row.sixth, sevenths), with(of_row.second, bends));
         let linear = system.linear();
         let size =
             |of: &[f64; N]| rated.iter().zip(of).map(|(weight, a)| times(weight.abs(), a.abs())).sum::<f64>();
@@ -123,7 +127,7 @@ impl<const N: usize> Form<N> {
         };
         // In a contact it has no bound by the energy alone.
         let most = [f64::INFINITY, 0.0, 0.0];
-        Self { rated: Some(rated), sixth: [b0 + offset, b1 + slope, b2], most, ..of_row }
+        Self { rated: Some(rated), sixth, second, most, ..of_row }
     }
 
     /// The same less what the force adds to the rate of the state. Its bounds are those with the force, whose terms all count by their sizes;
@@ -169,20 +173,25 @@ impl<const N: usize> Form<N> {
                 _ => 0.0,
             };
         }
-        let mut sixth = [0.0; 3];
-        for (k, binomial) in FIFTH.into_iter().enumerate() {
-            let ([a, b], [c, d]) = (speeds[k], forces[5 - k]);
-            sixth[2] += binomial * times(a, c);
-            sixth[1] += binomial * (times(a, d) + times(b, c));
-            sixth[0] += binomial * times(b, d);
-        }
+        // Leibniz's rule for a derivative of the product.
+        let derivative = |binomials: &[f64]| {
+            let mut sum = [0.0; 3];
+            for (k, binomial) in binomials.iter().enumerate() {
+                let ([a, b], [c, d]) = (speeds[k], forces[binomials.len() - 1 - k]);
+                sum[2] += binomial * times(a, c);
+                sum[1] += binomial * (times(a, d) + times(b, c));
+                sum[0] += binomial * times(b, d);
+            }
+            sum
+        };
+        let (sixth, second) = (derivative(&FIFTH), derivative(&[1.0, 1.0]));
         let (none, squares) = ([0.0; N], [(mass, unit(v)), (stiffness, unit(x))]);
         let slope = SlopeInFlight::new(system, &none, &squares);
         // The structure's energy is a part of the whole; the paper's of the damper is not, for its spring is stretched by another length.
         let norms = [v, x].map(|i| system.dual_energy_norm(&unit(i)).powi(2));
         let share = if x == 0 { 0.5 } else { 0.5 * (times(mass, norms[0]) + times(stiffness, norms[1])) };
         let most = [0.0, 0.0, share];
-        Self { linear: none, rated: None, squares, rest: linear.origin, sixth, most, slope }
+        Self { linear: none, rated: None, squares, rest: linear.origin, sixth, second, most, slope }
     }
 
     /// The quantity and its first two time derivatives where a motion in flight changes like this.
@@ -217,9 +226,13 @@ impl<const N: usize> Form<N> {
     /// A bound on the sixth time derivative in flight, wherever the energy norm of the state is at most `energy` (√J).
     #[inline(always)]
     pub fn sixth_in_flight(&self, energy: f64) -> f64 {
-        let [b0, b1, b2] = self.sixth;
-        let bound = b0 + (b1 + b2 * energy) * energy;
-        if bound.is_nan() { f64::INFINITY } else { bound }
+        at_energy(self.sixth, energy)
+    }
+
+    /// The same on the second.
+    #[inline(always)]
+    pub fn second_in_flight(&self, energy: f64) -> f64 {
+        at_energy(self.second, energy)
     }
 
     /// The sum of the sizes of its terms in flight, which sets its rounding error.
@@ -295,6 +308,13 @@ impl<const N: usize> Form<N> {
             term
         })
     }
+}
+
+/// A bound with these coefficients at an energy norm.
+#[inline(always)]
+fn at_energy([b0, b1, b2]: [f64; 3], energy: f64) -> f64 {
+    let bound = b0 + (b1 + b2 * energy) * energy;
+    if bound.is_nan() { f64::INFINITY } else { bound }
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 use super::observer::Observer;
 use super::quantity::Quantity;
 use super::running_maximum::RunningMaximum;
+use crate::linear::pieces::Block;
 use crate::linear::steps::Steps;
 use crate::motion::form::Form;
 use crate::motion::segment::Segment;
@@ -81,6 +82,9 @@ impl Observer<4> for ContactForces<'_> {
         self.walls[side as usize].segment(segment);
     }
     fn steps(&mut self, _steps: &Steps<'_, 4>) {}
+    fn skips(&self, _block: &Block<4>) -> bool {
+        true
+    }
     fn seam(&mut self) {
         self.walls.seam();
     }

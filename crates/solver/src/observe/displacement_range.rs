@@ -4,6 +4,7 @@ use super::contact_forces::ContactForces;
 use super::observer::{Impact, Observer, Path};
 use super::quantity::RelativePosition;
 use super::running_maximum::RunningMaximum;
+use crate::linear::pieces::Block;
 use crate::linear::steps::Steps;
 use crate::motion::segment::Segment;
 use crate::response::Extreme;
@@ -92,6 +93,9 @@ impl Observer<4> for DisplacementRange<'_> {
     fn steps(&mut self, steps: &Steps<'_, 4>) {
         self.ends.steps(steps);
         self.forces.steps(steps);
+    }
+    fn skips(&self, block: &Block<4>) -> bool {
+        self.ends.skips(block)
     }
     fn impact(&mut self, impact: &Impact<4>) {
         self.ends.impact(impact);

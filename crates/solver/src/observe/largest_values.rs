@@ -6,6 +6,7 @@ use super::observer::{Impact, Observer, Path};
 use super::quantity::PrimaryEnergy;
 use super::running_maximum::RunningMaximum;
 use super::structure::StructureMotion;
+use crate::linear::pieces::Block;
 use crate::linear::steps::Steps;
 use crate::motion::segment::Segment;
 use retune_model::{Coupled, Measure, PerMeasure};
@@ -77,6 +78,9 @@ impl Observer<4> for LargestValues<'_> {
         self.energy.steps(steps);
         self.motions.steps(steps);
         self.range.steps(steps);
+    }
+    fn skips(&self, block: &Block<4>) -> bool {
+        self.energy.skips(block) && self.motions.skips(block) && self.range.skips(block)
     }
     fn impact(&mut self, impact: &Impact<4>) {
         self.energy.impact(impact);

@@ -3,6 +3,7 @@
 use super::observer::{Impact, Observer, Path};
 use super::quantity::Quantity;
 use super::running_maximum::RunningMaximum;
+use crate::linear::pieces::Block;
 use crate::linear::steps::Steps;
 use crate::motion::segment::Segment;
 use crate::response::Extreme;
@@ -49,6 +50,10 @@ impl<const N: usize, Q: Quantity<N>> Observer<N> for Magnitude<Q> {
     }
     fn steps(&mut self, steps: &Steps<'_, N>) {
         self.each(|one| one.steps(steps));
+    }
+    fn skips(&self, block: &Block<N>) -> bool {
+        let most = self.record().value;
+        self.0.iter().all(|one| one.stays_below(block, most))
     }
     fn impact(&mut self, impact: &Impact<N>) {
         self.0.impact(impact);

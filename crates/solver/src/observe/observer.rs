@@ -1,5 +1,6 @@
 //! Observers: a method hands over its motion segment by segment, and each observer keeps its own result.
 
+use crate::linear::pieces::Block;
 use crate::linear::steps::Steps;
 use crate::motion::form::Form;
 use crate::motion::knot::Knot;
@@ -76,6 +77,11 @@ pub trait Observer<const N: usize> {
             }
         }
     }
+    /// Whether it provably needs nothing of these pieces of a record: then they are not handed over.
+    #[inline(always)]
+    fn skips(&self, _block: &Block<N>) -> bool {
+        !Self::WATCHES_MOTION
+    }
     /// The damper has touched a wall at time `t` (s).
     fn touch_down(&mut self, _t: f64, _side: Side) {}
     /// The damper has struck a rigid wall: between two segments the state jumps.
@@ -114,6 +120,9 @@ impl<const N: usize, A: Observer<N>, B: Observer<N>> Observer<N> for (A, B) {
         self.0.steps(steps);
         self.1.steps(steps);
     }
+    fn skips(&self, block: &Block<N>) -> bool {
+        self.0.skips(block) && self.1.skips(block)
+    }
     fn touch_down(&mut self, t: f64, side: Side) {
         self.0.touch_down(t, side);
         self.1.touch_down(t, side);
@@ -145,6 +154,9 @@ impl<const N: usize, O: Observer<N>> Observer<N> for &mut O {
     fn steps(&mut self, steps: &Steps<'_, N>) {
         (**self).steps(steps);
     }
+    fn skips(&self, block: &Block<N>) -> bool {
+        (**self).skips(block)
+    }
     fn touch_down(&mut self, t: f64, side: Side) {
         (**self).touch_down(t, side);
     }
@@ -175,6 +187,9 @@ macro_rules! for_each_in {
             }
             fn steps(&mut self, steps: &Steps<'_, N>) {
                 self.iter_mut().for_each(|observer| observer.steps(steps));
+            }
+            fn skips(&self, block: &Block<N>) -> bool {
+                self.iter().all(|observer| observer.skips(block))
             }
             fn touch_down(&mut self, t: f64, side: Side) {
                 self.iter_mut().for_each(|observer| observer.touch_down(t, side));

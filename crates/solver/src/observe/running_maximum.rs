@@ -4,6 +4,7 @@ use super::observer::{Impact, MOST_KNOTS, Observer, Path};
 use super::quantity::{Quantity, rates_in};
 use super::quintic::{highest, quintic};
 use super::search::{Search, in_theta};
+use crate::linear::pieces::Block;
 use crate::linear::steps::Steps;
 use crate::motion::form::QUINTIC;
 use crate::motion::lanes::shifted;
@@ -43,6 +44,17 @@ impl<Q> RunningMaximum<Q> {
 }
 
 impl<Q> RunningMaximum<Q> {
+    /// Whether no value in these pieces of a record exceeds `most`.
+    #[inline(always)]
+    pub(super) fn stays_below<const N: usize>(&self, block: &Block<N>, most: f64) -> bool
+    where
+        Q: Quantity<N>,
+    {
+        let quantity = &self.search.quantity;
+        let value = |force: &[f64x4; 2], y: &[f64x4; N]| quantity.rates_in_flight(force, y)[0];
+        block.range(value, quantity.form().second_in_flight(block.energy))[1] <= most
+    }
+
     /// [`Observer::path`] of a quantity that depends on the force; `values` are those without it.
     fn forced_path<const N: usize>(&mut self, path: &impl Path<N>, times: &[f64], values: &[f64])
     where
@@ -187,6 +199,11 @@ where
             let (from, to) = ((0.0, *begin, rates(begins)), (h, *end, rates(ends)));
             self.search.begin(&step, &from, &to, remainder);
         }
+    }
+
+    #[inline(always)]
+    fn skips(&self, block: &Block<N>) -> bool {
+        self.stays_below(block, self.search.record.value)
     }
 
     /// The rates before a jump are not those after it.

@@ -1,6 +1,7 @@
 //! An observer that looks from a time on.
 
 use super::observer::{Impact, Observer, Path};
+use crate::linear::pieces::Block;
 use crate::linear::steps::Steps;
 use crate::motion::form::Form;
 use crate::motion::knot::{Jet, Knot};
@@ -48,6 +49,9 @@ impl<O: Observer<4>> Observer<4> for Since<O> {
         } else if steps.time(steps.count()) > self.from {
             (0..steps.count()).for_each(|number| self.segment(&steps.step(number)));
         }
+    }
+    fn skips(&self, block: &Block<4>) -> bool {
+        block.end <= self.from || (block.t >= self.from && self.observer.skips(block))
     }
     fn touch_down(&mut self, t: f64, side: Side) {
         if t >= self.from {

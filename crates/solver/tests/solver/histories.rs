@@ -1,7 +1,7 @@
 //! Runs under pulses and records.
 
 use retune_model::{Finite, Form, History, Of, Samples, Scene, Shape};
-use retune_solver::{Method, Response, Rows, Settings, Window, simulate, trajectory};
+use retune_solver::{Method, Response, Rows, Settings, Window, e1_max, simulate, trajectory};
 use retune_testkit::histories::{made, noise, pulse, record};
 use retune_testkit::scenes::{LOSSY, Numbers, SSVI, Spread, TMD, TWO_SIDED};
 
@@ -159,6 +159,53 @@ fn exact_a_sample_on_a_line_changes_nothing() {
         }
     }
     assert!(touched > 40, "{touched}");
+}
+
+/// Pieces of an equidistant record are passed many at a time. With one more sample on the first line it is not equidistant, and every piece is
+/// looked at by itself.
+#[test]
+fn exact_pieces_passed_together_hide_no_largest_value() {
+    let mut spread = Spread::new(12);
+    for (step, count) in [(0.05, 130), (0.004, 1600)] {
+        for numbers in [SSVI, TMD, Numbers { e: 0.7, ..SSVI }] {
+            for (of, size) in [(Of::Force, 2500.0), (Of::BaseAcceleration, 2.5)] {
+                let mut now = 0.0;
+                let mut next = || {
+                    now += 0.2 * (spread.signed() - now);
+                    size * now
+                };
+                let values: Vec<f64> = (0..count).map(|_| next()).collect();
+                let (mut times, mut more) =
+                    ((0..count).map(|i| f64::from(i) * step).collect::<Vec<f64>>(), values.clone());
+                times.insert(1, 0.3 * step);
+                more.insert(1, values[0] + 0.3 * (values[1] - values[0]));
+                let even = record(of, Samples::every(0.0, step, values).expect("a record"));
+                let uneven = record(of, Samples::at(times, more).expect("a record"));
+                for scene in [numbers.under(even), bare(numbers, even)] {
+                    let other = Scene { forcing: numbers.under(uneven).forcing, ..scene };
+                    let [ours, theirs] = [&scene, &other].map(|scene| run(scene, 6.0));
+                    assert_eq!(ours.impacts, theirs.impacts);
+                    let close = |a: f64, b: f64, what: &str| {
+                        let off = (a / b - 1.0).abs();
+                        assert!(off < 1e-7 || a == b, "{what}: {a} {b}, {off:e}, {of:?} {step} {numbers:?}");
+                    };
+                    close(ours.e1_max.value, theirs.e1_max.value, "E1max");
+                    close(ours.e2_max.value, theirs.e2_max.value, "E2max");
+                    close(ours.spring_deflection_max, theirs.spring_deflection_max, "stroke");
+                    for (ours, theirs) in ours.structure.all().into_iter().zip(theirs.structure.all()) {
+                        close(ours.value, theirs.value, "of the structure");
+                    }
+                    let window = Window { from: 0.0, to: 6.0 };
+                    let alone = e1_max(&scene, window, &Settings::default(), f64::INFINITY);
+                    assert_eq!(
+                        alone.expect("a run").value,
+                        ours.e1_max.value,
+                        "other observers, other pieces"
+                    );
+                }
+            }
+        }
+    }
 }
 
 /// Every kind of history by two methods, with contacts.

@@ -9,13 +9,16 @@
 //!
 //! and the residuals are `f - ζ^(3/2) φ(ζ^(5/2)/2, ż/w)` and the depth at the end. The iteration is that of contacts without loss.
 
+use super::bends::Added;
 use super::disturbed::UNDISTURBED;
 use super::lossy_rule::LossyRule;
 use super::newton::Extended;
 use super::nodes::{Nodes, at_nodes, dot, product};
 use super::response::{Collisions, FREE};
 use super::rule::Rule;
-use super::solve::{Found, MAX_ITERATIONS, Pushed, error, free_terms, size};
+use super::solve::{
+    FLAT, Found, MAX_ITERATIONS, Pushed, error, free_terms, relative_position, relative_velocity, size,
+};
 use super::unit_law::UnitLaw;
 use crate::motion::knot::Knot;
 use crate::motion::linearised::MOMENTS;
@@ -36,6 +39,8 @@ struct Contact<'a, const N: usize, const M: usize> {
     /// `z_free / t` in Z, and `ż_free` in w.
     approach: Polynomial<FREE>,
     pace: Polynomial<FREE>,
+    /// What bends of the force add to `z_free` and to `ż_free`, in the same units.
+    bent: [Added<'a>; 2],
 }
 
 /// The motion under forces at the nodes: depths and speeds there, and the depth at the end.
@@ -83,11 +88,15 @@ impl<const N: usize, const M: usize> Contact<'_, N, M> {
         let slowing = duration * depth * depth.sqrt() / speed;
         let times = rule.times.map(|time| time * duration);
         let mean_rate = at_nodes(&self.approach, free_terms(terms) - 1, &times);
-        let rate = at_nodes(&self.pace, free_terms(terms), &times);
+        let mut rate = at_nodes(&self.pace, free_terms(terms), &times);
+        let mut without: Nodes<M> = std::array::from_fn(|i| mean_rate[i] * times[i]);
+        let [deeper, faster] = &self.bent;
+        deeper.to_nodes(&mut without, &times, free_terms(terms));
+        faster.to_nodes(&mut rate, &times, free_terms(terms));
         Motion {
-            depths: std::array::from_fn(|i| mean_rate[i] * times[i] - pushed[i] * scale),
+            depths: std::array::from_fn(|i| without[i] - pushed[i] * scale),
             speeds: std::array::from_fn(|i| rate[i] - slowed[i] * slowing),
-            end: self.approach.at(duration) * duration - scale * pushed_last,
+            end: self.approach.at(duration) * duration + deeper.at(duration) - scale * pushed_last,
         }
     }
 }
@@ -101,7 +110,7 @@ impl Collisions {
         law: &UnitLaw,
         touch: &Knot<4>,
         to: f64,
-        Pushed { free, moments, last }: &mut Pushed<M>,
+        Pushed { free, moments, last, bends, bend }: &mut Pushed<'_, M>,
     ) -> Option<Found<M>> {
         let rule = &of.rule;
         let speed = self.side.sign() * (touch.y[3] - touch.y[1]);
@@ -121,7 +130,11 @@ impl Collisions {
             part *= undisturbed / (k + 1) as f64;
             weights[k] = part * self.gains[k].abs();
         }
-        let contact = Contact { of: self, rule, terms, depth, speed, undisturbed, weights, approach, pace };
+        let to_depth = self.side.sign() / depth;
+        let bent = [relative_position(bend, to_depth), relative_velocity(bend, self.side.sign() / speed)]
+            .map(|one| bends.added(one));
+        let contact =
+            Contact { of: self, rule, terms, depth, speed, undisturbed, weights, approach, pace, bent };
         let mut unknowns: Extended<M> = (of.forces, 1.0);
         let mut amounts = UNDISTURBED;
         let (mut before, mut last_gain) = (1.0_f64, 0.0_f64);
@@ -163,7 +176,8 @@ impl Collisions {
             if size * gains <= 0.3 * self.rtol {
                 let Motion { depths, .. } = contact.motion(unknowns.1, moments, last);
                 let duration = unknowns.1 * undisturbed;
-                let error = error(rule, &unknowns.0, of.tail);
+                let kink = of.kink * contact.bent[0].kink(duration, FLAT / N as f64);
+                let error = error(rule, &unknowns.0, of.tail, kink);
                 let is_right = error <= self.rtol && touch.t + duration < to;
                 return is_right.then_some(Found { depth, terms, depths, duration, iterations });
             }

@@ -41,6 +41,15 @@ fn tail<const N: usize>(law: &UnitLaw) -> f64 {
     slowly * if N == 12 { 4e-3 } else { TAIL[2] }
 }
 
+/// As `solve::KINK`, for the rule of N nodes: a bound on what the linear theory gives for restitutions from 0.3, and for χ up to 1.75.
+pub(super) fn kink<const N: usize>(law: &UnitLaw) -> f64 {
+    let loss = match law {
+        UnitLaw::Restoring(law) => 0.17 * (5.05 * (1.0 - law.restitution())).exp(),
+        UnitLaw::Damping(chi) => 0.34 + 1.7 * chi,
+    };
+    loss / (N as f64).powi(4)
+}
+
 impl LossyRules {
     fn new(law: &UnitLaw) -> Self {
         let undisturbed = Lossy::new(law);
@@ -118,6 +127,8 @@ pub struct LossyRule<const N: usize, const M: usize> {
     pub law: Option<NodeLaw<M>>,
     /// The error of the end of a contact over `tail^1.25`.
     pub tail: f64,
+    /// That of a bend that adds a cube of 1 to the depth.
+    pub kink: f64,
     /// The iteration from there.
     pub newton: Newton<N, M>,
 }
@@ -134,6 +145,7 @@ impl<const N: usize, const M: usize> LossyRule<N, M> {
         Self {
             duration,
             tail: tail::<N>(law),
+            kink: kink::<N>(law),
             forces: packed(forces),
             speeds: packed(&speeds),
             slopes: [0, 1].map(|by| packed::<N, M>(&slopes.map(|slopes| slopes[by]))),

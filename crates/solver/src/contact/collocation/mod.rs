@@ -14,9 +14,13 @@
 //! (see `lossy`, `lossy_rule`, `unit_law` and `node_law`). A contact that is not of this kind is declined, and integrated step by step (see
 //! `regularised`).
 //!
+//! A record's force bends at its samples. The free motion takes every bend in exactly, and the contact force is nearly smooth there (see
+//! `bends`): a contact may span samples.
+//!
 //! Read `undisturbed` (the collision that all are close to), `nodes` and `rule` (integrals of its force on few nodes), `response`
 //! (`A^k b` and `g_k`), `disturbed`, `newton` and `solve` (the iteration), then `motion` (the motion that observers see).
 
+pub mod bends;
 pub mod disturbed;
 pub mod lossy;
 pub mod lossy_rule;

@@ -1,9 +1,10 @@
 //! The motion during a contact that was computed at once.
 
+use super::bends::Bends;
 use super::nodes::{Nodes, at_nodes, dot, node};
 use super::response::{Collisions, FREE};
 use super::rule::Rule;
-use crate::contact::regularised::piece::Piece;
+use crate::contact::regularised::piece::{Piece, TIME, at_elapsed, knot};
 use crate::linear::flow::{Expansion, Flow};
 use crate::motion::form::Form;
 use crate::motion::knot::Knot;
@@ -11,7 +12,7 @@ use crate::motion::lanes::each;
 use crate::motion::linearised::{LinearContact, MOMENTS};
 use crate::observe::observer::{Observer, Path};
 use nalgebra::DMatrix;
-use retune_model::{Growth, OverContact};
+use retune_model::{Excitation, Growth, OverContact, RegularisedContact, RegularisedState};
 use wide::f64x4;
 
 /// A contact from touch-down to lift-off.
@@ -22,6 +23,8 @@ pub(super) struct Collision<'a, const N: usize, const M: usize> {
     pub(super) touch: &'a Knot<4>,
     /// The motion without contact, and the terms of it and of the response to the force that are needed.
     pub(super) free: &'a Expansion<4, FREE>,
+    /// Where the force bends.
+    pub(super) bends: &'a Bends,
     pub(super) free_terms: usize,
     pub(super) terms: usize,
     /// Moments of the force at the nodes and at lift-off, and the factor to impulses (N·s, over `K`).
@@ -42,6 +45,7 @@ impl<const N: usize, const M: usize> Collision<'_, N, M> {
     #[inline(always)]
     pub(super) fn lift_off(&self) -> [f64; 4] {
         let (mut end, mut power) = (self.free.at(self.duration), self.scale);
+        self.bends.to_state(&mut end, self.flow.bend(), self.duration);
         for (moment, kick) in self.last.iter().zip(&self.of.kicks).take(self.terms + 1) {
             for c in 0..4 {
                 end[c] += kick[c] * power * moment;
@@ -57,6 +61,7 @@ impl<const N: usize, const M: usize> Collision<'_, N, M> {
     fn component(&self, c: usize) -> Nodes<M> {
         let times = self.rule.times.map(|time| time * self.duration);
         let mut nodes = at_nodes(&self.free.0[c], self.free_terms, &times);
+        self.bends.added(self.flow.bend().0[c]).to_nodes(&mut nodes, &times, self.free_terms);
         let mut power = self.scale;
         for (moment, kick) in self.moments.iter().zip(&self.of.kicks).take(self.terms + 1) {
             for i in 0..M {
@@ -67,15 +72,29 @@ impl<const N: usize, const M: usize> Collision<'_, N, M> {
         nodes
     }
 
+    /// The pair of the force so many seconds after touch-down.
+    #[inline(always)]
+    pub(super) fn excitation(&self, elapsed: f64) -> Excitation {
+        let pair = self.flow.excitation_after(self.touch.excitation, elapsed);
+        self.bends.bent(pair, self.flow.linear().frequency, elapsed)
+    }
+
     /// The state at one node, equal to [`Self::component`] to the last bit.
     fn state(&self, i: usize) -> [f64; 4] {
         let time = node(&self.rule.times, i) * self.duration;
-        each(|c| {
+        let first_terms = |blocks: &[f64x4], s: f64| {
             let mut value = 0.0;
-            for block in self.free.0[c].0.iter().take(self.free_terms.div_ceil(4)).rev() {
+            for block in blocks.iter().take(self.free_terms.div_ceil(4)).rev() {
                 for coefficient in block.to_array().into_iter().rev() {
-                    value = value * time + coefficient;
+                    value = value * s + coefficient;
                 }
+            }
+            value
+        };
+        each(|c| {
+            let mut value = first_terms(&self.free.0[c].0, time);
+            for &[bent, jump] in self.bends.all() {
+                value += first_terms(&self.flow.bend().0[c].0, (time - bent).max(0.0)) * jump;
             }
             let mut power = self.scale;
             for (moment, kick) in self.moments.iter().zip(&self.of.kicks).take(self.terms + 1) {
@@ -128,7 +147,7 @@ impl<const N: usize, const M: usize> Collision<'_, N, M> {
         };
         Knot {
             t: self.touch.t + elapsed,
-            excitation: self.flow.excitation_after(self.touch.excitation, elapsed),
+            excitation: self.excitation(elapsed),
             y,
             clock: [root, 0.5 * self.of.side.sign() * (y[3] - y[1])],
         }
@@ -154,6 +173,31 @@ impl<const N: usize, const M: usize> Collision<'_, N, M> {
             }
         }
         all
+    }
+}
+
+impl<const N: usize, const M: usize> Collision<'_, N, M> {
+    /// A piece from a state, with the derivative there, over a length in θ.
+    fn piece<'a>(
+        &self,
+        equations: &'a RegularisedContact,
+        (from, slope): (&'a RegularisedState, &'a RegularisedState),
+        length: f64,
+        ends: [Knot<4>; 2],
+    ) -> Piece<'a> {
+        Piece {
+            equations,
+            touch_down: ends[0].t,
+            from,
+            slope,
+            length,
+            // Nodes are about as far apart as the steps that `rtol` asks for, and farther near the ends. Where energy is lost a contact has more of
+            // them: one step is enough but for the last digits.
+            steps: if self.of.loss.is_some() && self.of.rtol >= 1e-11 { 1 } else { 2 },
+            ends,
+            energy: f64::INFINITY,
+            bounds: Default::default(),
+        }
     }
 }
 
@@ -197,34 +241,40 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
         })
     }
 
-    /// The segment between two knots is integrated from the first of them.
+    /// The segment between two knots is integrated from the first of them, and cut where the force bends.
     fn show(&self, piece: usize, observer: &mut impl Observer<4>) {
-        let ends = [self.knot(piece), self.knot(piece + 1)];
-        let mut from = self.of.equations.regularise(&ends[0].y);
-        from[0] = ends[0].clock[0];
+        let [mut begin, end] = [self.knot(piece), self.knot(piece + 1)];
+        let [mut now, last] = [piece, piece + 1].map(|knot| self.time(knot) * self.duration);
+        let mut from = self.of.equations.regularise(&begin.y);
+        from[0] = begin.clock[0];
         let mut equations = self.of.equations.clone();
-        equations.set_excitation(0.0, ends[0].excitation);
         let slope: Nodes<M> = std::array::from_fn(|i| self.rule.rates[i] / self.roots[i]);
-        let length = self.duration * (self.theta(&slope, piece + 1) - self.theta(&slope, piece));
+        let mut length = self.duration * (self.theta(&slope, piece + 1) - self.theta(&slope, piece));
+        for &[time, jump] in self.bends.all() {
+            if time < now || time >= last {
+                continue;
+            }
+            equations.set_excitation(0.0, begin.excitation);
+            let derivative = equations.derivative(&from);
+            let whole = self.piece(&equations, (&from, &derivative), length, [begin, end]);
+            let (theta, mut bent) = at_elapsed(|theta| whole.advance(theta), length, time - now);
+            let mut at = knot(&equations, begin.t, &bent);
+            if theta > 0.0 {
+                observer.segment(&self.piece(&equations, (&from, &derivative), theta, [begin, at]));
+            }
+            observer.seam();
+            at.excitation[1] += jump;
+            bent[TIME] = 0.0;
+            (begin, now, from, length) = (at, time, bent, length - theta);
+        }
+        equations.set_excitation(0.0, begin.excitation);
         let derivative = equations.derivative(&from);
-        let mut piece = Piece {
-            equations: &equations,
-            touch_down: ends[0].t,
-            from: &from,
-            slope: &derivative,
-            length,
-            // Nodes are about as far apart as the steps that `rtol` asks for, and farther near the ends. Where energy is lost a contact has more of
-            // them: one step is enough but for the last digits.
-            steps: if self.of.loss.is_some() && self.of.rtol >= 1e-11 { 1 } else { 2 },
-            ends,
-            energy: f64::INFINITY,
-            bounds: Default::default(),
-        };
+        let mut rest = self.piece(&equations, (&from, &derivative), length, [begin, end]);
         // On the clock of lossy contacts, which suits their force, the integral of 1/√z has fewer digits: an error of 1e-11 was seen.
         if self.of.loss.is_some() && self.of.rtol < 1e-10 {
-            piece.meet_end();
+            rest.meet_end();
         }
-        observer.segment(&piece);
+        observer.segment(&rest);
     }
 
     fn linearised(&self, loss: bool) -> LinearContact {

@@ -1,7 +1,9 @@
 //! How the force of a contact moves the linear system: `A^k b` and `g_k`, and for how long few terms suffice.
 
 use super::lossy_rule::Loss;
+use super::undisturbed::DURATION;
 use crate::linear::flow::Flow;
+use crate::motion::knot::Knot;
 use crate::motion::linearised::MOMENTS;
 use crate::system::LinearSystem;
 use retune_model::{Coupled, RegularisedContact, Side};
@@ -28,12 +30,21 @@ pub struct Collisions {
     pub amplitude: f64,
 }
 
+/// The duration of any collision over that of the undisturbed one is expected to be less: where the force bends later, it does not matter.
+const LONGEST: f64 = 2.0;
+
 /// Blocks of four terms of the free motion's Taylor series, and the largest `rate t` for which they are exact:
 /// `0.3¹² / 12! = 1e-15`.
 pub const FREE: usize = 3;
 const BRIEF: f64 = 0.3;
 
 impl Collisions {
+    /// When a contact that begins at `touch` is over at the latest, s, if it is nearly an undisturbed collision.
+    pub fn latest_end(&self, touch: &Knot<4>) -> f64 {
+        let speed = self.side.sign() * (touch.y[3] - touch.y[1]);
+        touch.t + LONGEST * DURATION * self.equations.greatest_depth(speed).powi(2) / speed
+    }
+
     /// Prepares for contacts with `side`, each to be computed with an error of `rtol` relative to its touch-down speed.
     pub fn new(system: &Coupled, side: Side, flow: &Flow<4>, rtol: f64) -> Self {
         let (columns, sign) = (flow.linear().columns, side.sign());

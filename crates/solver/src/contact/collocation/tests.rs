@@ -1,5 +1,9 @@
 //! Contacts computed at once beside the same contacts followed step by step.
 
+mod bends;
+mod kinks;
+
+use super::bends::Bends;
 use super::response::Collisions;
 use crate::budget::{Budget, Pace};
 use crate::contact::regularised::integrate::{End, integrate};
@@ -48,12 +52,22 @@ fn touch_down(draw: &mut Draw, system: &Coupled) -> (Side, Knot<4>) {
 
 fn step_by_step(system: &Coupled, side: Side, touch: &Knot<4>) -> Knot<4> {
     let equations = system.regularised_contact(side);
-    let regularised = equations.regularise(&touch.y);
+    let mut regularised = equations.regularise(&touch.y);
     let budget = Budget::new(Pace::Steps, 100_000, Work::default(), [0.0, 1e9]);
     let (limits, mut work) = ((system, 1e-13, budget), Work::default());
-    match integrate(equations, touch, regularised, 1e9, limits, &mut work, &mut Unobserved) {
-        Ok(End::LiftOff(end)) => end,
-        _ => panic!("no lift-off"),
+    let mut from = *touch;
+    loop {
+        // It begins anew where the force bends.
+        let to = system.bare().stretch(from.t).map_or(1e9, |stretch| stretch.to.min(1e9));
+        match integrate(equations.clone(), &from, regularised, to, limits, &mut work, &mut Unobserved) {
+            Ok(End::LiftOff(end)) => return end,
+            Ok(End::InContact(end)) => {
+                regularised = equations.regularise(&end.y);
+                regularised[0] = end.clock[0];
+                from = Knot { excitation: system.excitation(to), ..end };
+            }
+            Err(_) => panic!("no lift-off"),
+        }
     }
 }
 
@@ -61,7 +75,7 @@ fn step_by_step(system: &Coupled, side: Side, touch: &Knot<4>) -> Knot<4> {
 fn at_once(system: &Coupled, side: Side, touch: Knot<4>, rtol: f64) -> Option<f64> {
     let flow = Flow::new(LinearSystem::linear(system), 1.0);
     let collisions = Collisions::new(system, side, &flow, rtol);
-    let (Knot { t, y, .. }, _) = collisions.collide(&flow, touch, 1e9, &mut Unobserved)?;
+    let (Knot { t, y, .. }, _) = collisions.collide(&flow, touch, 1e9, &Bends::NONE, &mut Unobserved)?;
     let expected = step_by_step(system, side, &touch);
     let speed = (touch.y[3] - touch.y[1]).abs();
     let velocity = (y[1] - expected.y[1]).abs().max((y[3] - expected.y[3]).abs()) / speed;
@@ -218,7 +232,7 @@ fn inside(numbers: Numbers, rtol: f64, pieces: usize, allowed: f64) {
         let touch = Knot { t: 0.3, excitation: system.excitation(0.3), y, clock: [1.0, 0.0] };
         let collisions = Collisions::new(&system, side, &flow, rtol);
         let mut compare = Compare { system: &system, side, touch, worst: 0.0, pieces: 0 };
-        collisions.collide(&flow, touch, 1e9, &mut compare).expect("an ordinary contact");
+        collisions.collide(&flow, touch, 1e9, &Bends::NONE, &mut compare).expect("an ordinary contact");
         assert!(compare.pieces >= pieces, "{}", compare.pieces);
         assert!(compare.worst < allowed, "{:e} at rtol {rtol:e}", compare.worst);
     }
@@ -235,7 +249,9 @@ fn contract_states_that_are_no_collision_are_declined() {
         y: [0.0, speed, 0.0, 0.0],
         clock: [1.0, 0.0],
     };
-    let taken = |speed: f64, to: f64| collisions.collide(&flow, at(speed), to, &mut Unobserved).is_some();
+    let taken = |speed: f64, to: f64| {
+        collisions.collide(&flow, at(speed), to, &Bends::NONE, &mut Unobserved).is_some()
+    };
     assert!(taken(1.0, 1.0), "an ordinary contact");
     for speed in [0.0, -1.0, 1e-9, f64::NAN, f64::INFINITY] {
         assert!(!taken(speed, 1.0), "a speed of {speed}");

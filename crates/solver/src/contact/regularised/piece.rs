@@ -117,7 +117,8 @@ impl Piece<'_> {
         self.length -= if q > 0.0 { (y[TIME] - t) / y[Q] } else { 2.0 * y[Q] / y[W] };
     }
 
-    fn advance(&self, theta: f64) -> RegularisedState {
+    /// The state at `θ`.
+    pub fn advance(&self, theta: f64) -> RegularisedState {
         let h = theta / f64::from(self.steps);
         let mut y = step(self.equations, self.from, self.slope, h).y;
         for _ in 1..self.steps {
