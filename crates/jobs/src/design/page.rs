@@ -274,7 +274,10 @@ fn to_scale(of: &Candidate) -> Drawing {
     ));
     layers.push(bar(motion, (1.0, 1.2), GREEN, 0.9));
     layers.push(text((0.0, 1.55), format!("± {} mm", rounded(motion, 4))));
-    layers.push(Layer::Upright { x: 0.0, stroke: Stroke::new(BLACK, 0.7, Dash::Dots) });
+    // The place at rest, but not through words.
+    for (from, to) in [(0.75, 1.4), (1.75, 2.4), (2.8, 3.0)] {
+        layers.push(Layer::line([(0.0, from), (0.0, to)], Stroke::new(BLACK, 0.7, Dash::Dots)));
+    }
     layers.push(Layer::Marks { points: vec![(0.0, 2.1)], mark: Mark::new(Shape::Square, BLACK, 5.0) });
     let y = Axis::of_names((0.0, 3.0), vec![(2.1, "damper".to_owned()), (1.1, "structure".to_owned())]);
     let chart = Chart::of(Axis::linear("distance from rest, mm", (ends[0], ends[1])), y, layers, 150.0);
