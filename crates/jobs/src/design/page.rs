@@ -138,13 +138,18 @@ const fn line(what: What) -> Stroke {
 /// A frequency, rad/s, and the quantities there, in SI units.
 type Curve = Vec<(f64, PerMeasure<f64>)>;
 
-/// Every quantity of a candidate at frequencies of the band (rad/s), once its motion is steady; NaN where a run fails.
+/// Every quantity of a candidate at frequencies of the band (rad/s), those of its largest values among them, once its motion is steady; NaN
+/// where a run fails.
 fn curve(of: &Candidate, [from, to]: [f64; 2]) -> Curve {
     let study = &of.study;
     let closed = study.goal().objective.is_steady();
     let points = if closed { FINE } else { RUNS };
-    let value = |i: usize| {
-        let omega = from + (to - from) * i as f64 / (points - 1) as f64;
+    let even = (0..points).map(|i| from + (to - from) * i as f64 / (points - 1) as f64);
+    let peaks = Measure::ALL.into_iter().map(|measure| of.steady.get(measure).omega);
+    let mut all: Vec<f64> = even.chain(peaks.filter(|omega| (from..=to).contains(omega))).collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    let value = |omega: f64| {
         let none = PerMeasure::all(f64::NAN);
         let Some(scene) = at(omega, study.scene) else { return (omega, none) };
         if closed {
@@ -160,7 +165,7 @@ fn curve(of: &Candidate, [from, to]: [f64; 2]) -> Curve {
         let run = extremes(&scene, window, &study.solver.settings(), Ask { also, ..Ask::default() });
         (omega, run.map_or(none, |run| run.reached))
     };
-    (0..points).into_par_iter().map(value).collect()
+    all.into_par_iter().map(value).collect()
 }
 
 fn curves(requirements: &Requirements, compared: &Comparison, band: [f64; 2]) -> Drawing {
