@@ -1,6 +1,6 @@
 //! A page of results as data: written once as Markdown, for readers of the repository, and once as HTML, which needs no network.
 
-use crate::html::{Table, figure, head, link};
+use crate::html::{Table, figure, head, link, with_code};
 use crate::table::Column;
 use crate::{Drawing, table};
 use maud::{DOCTYPE, Markup, html};
@@ -272,11 +272,11 @@ impl Block {
 
     fn html(&self) -> Markup {
         match self {
-            Self::Words(words) => html! { p { (words) } },
+            Self::Words(words) => html! { p { (with_code(words)) } },
             Self::About(subject, words) => html! { p { b { (subject) ": " } (words) } },
             Self::MadeBy(words) => html! { p.made-by { b { "Made by: " } (words) } },
             Self::Statements(all) => html! { ul.statements { @for one in all { (one.html()) } } },
-            Self::List(all) => html! { ul { @for words in all { li { (words) } } } },
+            Self::List(all) => html! { ul { @for words in all { li { (with_code(words)) } } } },
             Self::Table(caption, head, rows) => {
                 let mut table = Table { head: head.clone(), ..Table::new(caption.as_str(), "") };
                 rows.iter().for_each(|row| table.row(row));

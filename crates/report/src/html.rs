@@ -94,3 +94,23 @@ pub fn figure(drawing: &Drawing, caption: Markup) -> Markup {
 pub fn link(name: &str) -> Markup {
     html! { a href=(name) { (name) } }
 }
+
+/// Words as HTML: what stands in backticks, as in Markdown, is code.
+pub fn with_code(words: &str) -> Markup {
+    html! {
+        @for (number, part) in words.split('`').enumerate() {
+            @if number % 2 == 1 { code { (part) } } @else { (part) }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contract_what_stands_in_backticks_is_code() {
+        let html = with_code("`retune optimize` looks at a < b.").into_string();
+        assert_eq!(html, "<code>retune optimize</code> looks at a &lt; b.");
+    }
+}

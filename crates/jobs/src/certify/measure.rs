@@ -3,7 +3,7 @@
 use super::certificate::{
     Certificate, FINER, Kept, Measured, Motion, Near, Neighbourhood, Run, Sensitivity, Verdict, WorstRun,
 };
-use super::motions::coexisting;
+use super::motions::{Effort, coexisting};
 use crate::Error;
 use crate::amount::Amount;
 use rayon::prelude::*;
@@ -40,6 +40,8 @@ pub(super) enum OtherStarts {
     Always,
     /// Those whose verdict may depend on it.
     WhereTheyDecide,
+    /// The same, from a few other starts, and at its own force alone.
+    FewWhereTheyDecide,
 }
 
 /// The parameters that a built scene has with an error; a loss or a restitution where it has one.
@@ -92,9 +94,13 @@ pub(super) fn measure(study: &Study, damper: &Damper, others: OtherStarts) -> Re
         limits,
     };
     let so_far = measured.judged(Amount::new(quantity, own.value)).verdict;
+    let effort = match others {
+        OtherStarts::FewWhereTheyDecide => Effort::Few,
+        _ => Effort::Whole(study.certificate),
+    };
     let decide = matches!(so_far, Some(Verdict::Robust | Verdict::Edge));
     if (decide || others == OtherStarts::Always)
-        && let Some(found) = coexisting(&study.scene, &own, &goal, &settings, study.certificate)?
+        && let Some(found) = coexisting(&study.scene, &own, &goal, &settings, effort)?
     {
         let at = "on a motion from another start".to_owned();
         near.push(Near { at, neighbour: false, reached: found.reached });

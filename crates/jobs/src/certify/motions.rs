@@ -15,6 +15,8 @@ use retune_study::Margins;
 /// Runs from rest over a band, and other starts for each: as `retune branches` has them if not told otherwise.
 const SAMPLES: usize = 31;
 const STARTS: usize = 16;
+/// Other starts for each where few are to do.
+const FEW: usize = 2;
 /// A force at which motions are looked for beside that of the margin that is needed, so that margins can be compared.
 const MORE: f64 = 1.2;
 /// At more force motions are followed that have this share of the value from rest.
@@ -22,9 +24,18 @@ const FOLLOWED: f64 = 0.8;
 /// A motion counts that has by this factor more than the runs from rest.
 pub(super) const NOTABLE: f64 = 1.05;
 
+/// How motions are looked for.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Effort {
+    /// By branches, at the design's own force and at more, up to these margins.
+    Whole(Margins),
+    /// By what a few starts lead to at its own force.
+    Few,
+}
+
 pub(super) struct Coexisting {
     pub motions: Motions,
-    /// None where the force has no amplitude.
+    /// None where the force has no amplitude, or was not raised.
     pub margin: Option<Margin>,
     /// The largest values of all motions at the design's own force.
     pub reached: PerLimit<f64>,
@@ -52,7 +63,7 @@ pub(super) fn coexisting(
     own: &Evaluation,
     goal: &Goal,
     settings: &Settings,
-    needed: Margins,
+    effort: Effort,
 ) -> Result<Option<Coexisting>, Unusable> {
     let strikes = scene.damper.is_some_and(|damper| damper.contact.is_some());
     if !strikes || scene.forcing.is_transient() {
@@ -63,14 +74,19 @@ pub(super) fn coexisting(
         return Ok(None);
     }
     let measure = goal.objective.quantity();
-    let force = scene.forcing.amplitude().filter(|(_, force)| force.get() > 0.0);
+    let needed = match effort {
+        Effort::Whole(needed) if scene.forcing.amplitude().is_some_and(|(_, force)| force.get() > 0.0) => {
+            Some(needed)
+        }
+        _ => None,
+    };
     let at_force = |times: f64| {
         let all: Result<Vec<_>, Unusable> =
-            places.par_iter().map(|place| place.at(times, settings)).collect();
+            places.par_iter().map(|place| place.at(times, settings, effort)).collect();
         all
     };
-    let first = 1.0 + needed.force;
-    let (mut here, more) = if force.is_some() && first > 1.0 {
+    let first = 1.0 + needed.map_or(0.0, |needed| needed.force);
+    let (mut here, more) = if first > 1.0 {
         let (here, more) = rayon::join(|| at_force(1.0), || at_force(first));
         (here?, more?)
     } else {
@@ -79,7 +95,8 @@ pub(super) fn coexisting(
     let is_safe = |(place, found): (&Place, &AtForce)| {
         found.branches.largest(measure).is_none_or(|one| one.value <= NOTABLE * place.from_rest)
     };
-    let mut margin = force.filter(|_| places.iter().zip(&here).all(is_safe)).map(|_| Margin::new(&needed));
+    let mut margin =
+        needed.filter(|_| places.iter().zip(&here).all(is_safe)).map(|needed| Margin::new(&needed));
     if let Some(margin) = &mut margin {
         let mut there = margin.lower(&places, &more, measure, settings)?;
         if margin.other.is_none() && first < MORE {
@@ -99,7 +116,7 @@ pub(super) fn coexisting(
             let value = largest.as_ref().map_or(0.0, |largest| largest.value);
             reached.set(limit, f64::max(reached.get(limit), value));
         }
-        all.push(place.motions(measure, &found));
+        all.push(place.motions(measure, &found, effort));
     }
     let mut k1_of: Vec<f64> = places.iter().map(|place| place.scene.primary.stiffness.get()).collect();
     k1_of.sort_by(f64::total_cmp);
@@ -146,7 +163,18 @@ impl Place {
         Plan { samples: SAMPLES, starts: self.starts, ..Plan::over(Parameter::Omega, self.band) }
     }
 
-    fn at(&self, times: f64, settings: &Settings) -> Result<AtForce, Unusable> {
+    /// The plan at its own force.
+    fn own_plan(&self, effort: Effort) -> Plan {
+        match effort {
+            Effort::Whole(_) => Plan { passes: 1, ..self.plan() },
+            Effort::Few => {
+                let none = Some((self.goal.objective.quantity(), f64::INFINITY));
+                Plan { starts: self.starts.min(FEW), least: none, ..self.plan() }
+            }
+        }
+    }
+
+    fn at(&self, times: f64, settings: &Settings, effort: Effort) -> Result<AtForce, Unusable> {
         let scene = with_force(&self.scene, times)?;
         // A steady motion whose damper reaches a wall there has no value: that of the linear one is compared with.
         let power = if self.goal.objective.quantity() == Measure::Energy { 2 } else { 1 };
@@ -158,7 +186,7 @@ impl Place {
         };
         // What may have much more is looked for at more force: motions with far less are not followed, nor are irregular windows sampled.
         let plan = if times == 1.0 {
-            Plan { passes: 1, ..self.plan() }
+            self.own_plan(effort)
         } else {
             Plan { least: Some((self.goal.objective.quantity(), FOLLOWED * from_rest)), ..self.plan() }
         };
@@ -166,14 +194,19 @@ impl Place {
         Ok(AtForce { times, from_rest, branches })
     }
 
-    fn motions(&self, quantity: Measure, found: &retune_dynamics::periodic::Motions) -> Motions {
+    fn motions(
+        &self,
+        quantity: Measure,
+        found: &retune_dynamics::periodic::Motions,
+        effort: Effort,
+    ) -> Motions {
         let [from, to] = self.band;
         let irregular = found.irregular.iter().map(|([from, to], value)| Irregular {
             from: *from,
             to: *to,
             value: Amount::new(quantity, *value),
         });
-        let starts = self.plan().others();
+        let starts = self.own_plan(effort).others();
         Motions {
             from,
             to,

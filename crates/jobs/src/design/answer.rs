@@ -4,6 +4,7 @@ use super::Formula;
 use super::candidate::{Candidate, What};
 use super::comparison::Comparison;
 use super::requirements::{Constraint, Dampers, Requirements};
+use super::ssvi::is_lossy;
 use super::words::{alike, broken_at_spaces, frequency, legible, limit, parameters, percent, sized, tuning};
 use retune_model::Measure;
 use retune_optim::{Limit, Need};
@@ -212,7 +213,9 @@ pub(super) fn findings(requirements: &Requirements, compared: &Comparison) -> Ve
     if let Some(certificate) = compared.certificate.as_ref().filter(|_| !compared.is_in_vain()) {
         let words = legible(certificate.reason().trim_end_matches("; other starts not looked at"));
         let name = compared.chosen().map_or("", |chosen| chosen.what.name());
-        lines.push(format!("How sure: the {name} is {words}."));
+        let further = compared.chosen().is_some_and(|chosen| is_lossy(&chosen.study.scene));
+        let further = if further { " `retune certify` looks at more starts, and at more force." } else { "" };
+        lines.push(format!("How sure: the {name} is {words}.{further}"));
     }
     if let (Some(other), Some(What::Ssvi)) = (compared.other_sign, compared.choice) {
         let (name, other) = (compared.goal.name(), sized(other, compared.goal.unit()));

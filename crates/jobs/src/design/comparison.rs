@@ -4,7 +4,7 @@ use super::candidate::{Candidate, What};
 use super::requirements::{Constraint, Dampers, Requirements};
 use super::words::{parameters, question, sized};
 use super::{Formula, ssvi, tmd};
-use crate::certify::{Certificate, Verdict, judge};
+use crate::certify::{Certificate, Verdict, judge, judge_in_seconds};
 use crate::{Error, Observer};
 use retune_model::{Design, Forcing, Measure, Parameter, Scene, Source};
 use retune_optim::{Limit, Need};
@@ -155,13 +155,18 @@ fn worst_nearby(certificate: &Certificate) -> f64 {
     worst.fold(measured.neighbourhood.high, f64::max)
 }
 
+/// The certificate of a candidate, as far as seconds allow.
+fn certified(study: &Study) -> Result<Certificate, Error> {
+    if ssvi::is_lossy(&study.scene) { judge_in_seconds(study) } else { judge(study) }
+}
+
 /// Of designs that are nearly as good as the first the one with the best certificate; one that is certain ends the search.
 fn trusted(
     first: (f64, Candidate),
     others: impl Iterator<Item = Result<(f64, Candidate), Error>>,
 ) -> Result<(Candidate, Certificate), Error> {
     let (least, first) = first;
-    let certificate = judge(&first.study)?;
+    let certificate = certified(&first.study)?;
     let mut best = (first, certificate);
     let mut others = others.take(JUDGED - 1);
     while doubt(&best.1) > 0
@@ -169,7 +174,7 @@ fn trusted(
         && candidate.feasible
         && value <= (1.0 + NEARLY) * least
     {
-        let certificate = judge(&candidate.study)?;
+        let certificate = certified(&candidate.study)?;
         if doubt(&certificate) < doubt(&best.1) {
             best = (candidate, certificate);
         }
@@ -230,7 +235,7 @@ pub(super) fn compare(
     let chosen = dampers.into_iter().flatten().find(|damper| Some(damper.what) == choice);
     let certificate = match choice {
         Some(What::Ssvi) => judged.clone(),
-        _ => chosen.map(|damper| judge(&damper.study)).transpose()?,
+        _ => chosen.map(|damper| certified(&damper.study)).transpose()?,
     };
     Ok(Comparison {
         goal,

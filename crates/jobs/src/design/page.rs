@@ -138,13 +138,18 @@ const fn line(what: What) -> Stroke {
 /// A frequency, rad/s, and the quantities there, in SI units.
 type Curve = Vec<(f64, PerMeasure<f64>)>;
 
-/// Every quantity of a candidate at frequencies of the band (rad/s), once its motion is steady; NaN where a run fails.
+/// Every quantity of a candidate at frequencies of the band (rad/s), those of its largest values among them, once its motion is steady; NaN
+/// where a run fails.
 fn curve(of: &Candidate, [from, to]: [f64; 2]) -> Curve {
     let study = &of.study;
     let closed = study.goal().objective.is_steady();
     let points = if closed { FINE } else { RUNS };
-    let value = |i: usize| {
-        let omega = from + (to - from) * i as f64 / (points - 1) as f64;
+    let even = (0..points).map(|i| from + (to - from) * i as f64 / (points - 1) as f64);
+    let peaks = Measure::ALL.into_iter().map(|measure| of.steady.get(measure).omega);
+    let mut all: Vec<f64> = even.chain(peaks.filter(|omega| (from..=to).contains(omega))).collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    let value = |omega: f64| {
         let none = PerMeasure::all(f64::NAN);
         let Some(scene) = at(omega, study.scene) else { return (omega, none) };
         if closed {
@@ -160,7 +165,7 @@ fn curve(of: &Candidate, [from, to]: [f64; 2]) -> Curve {
         let run = extremes(&scene, window, &study.solver.settings(), Ask { also, ..Ask::default() });
         (omega, run.map_or(none, |run| run.reached))
     };
-    (0..points).into_par_iter().map(value).collect()
+    all.into_par_iter().map(value).collect()
 }
 
 fn curves(requirements: &Requirements, compared: &Comparison, band: [f64; 2]) -> Drawing {
@@ -274,7 +279,10 @@ fn to_scale(of: &Candidate) -> Drawing {
     ));
     layers.push(bar(motion, (1.0, 1.2), GREEN, 0.9));
     layers.push(text((0.0, 1.55), format!("± {} mm", rounded(motion, 4))));
-    layers.push(Layer::Upright { x: 0.0, stroke: Stroke::new(BLACK, 0.7, Dash::Dots) });
+    // The place at rest, but not through words.
+    for (from, to) in [(0.75, 1.4), (1.75, 2.4), (2.8, 3.0)] {
+        layers.push(Layer::line([(0.0, from), (0.0, to)], Stroke::new(BLACK, 0.7, Dash::Dots)));
+    }
     layers.push(Layer::Marks { points: vec![(0.0, 2.1)], mark: Mark::new(Shape::Square, BLACK, 5.0) });
     let y = Axis::of_names((0.0, 3.0), vec![(2.1, "damper".to_owned()), (1.1, "structure".to_owned())]);
     let chart = Chart::of(Axis::linear("distance from rest, mm", (ends[0], ends[1])), y, layers, 150.0);

@@ -4,7 +4,7 @@ use super::driving::Driving;
 use super::history;
 use super::requirements::{Dampers, Requirements, STEEL, Wall};
 use super::typed::{Specification, Typed};
-use super::words::radians;
+use super::words::{percent, radians};
 use crate::Error;
 use retune_model::{Measure, Parameter, Positive, Unit, unit};
 use retune_optim::{Limit, Limits};
@@ -242,7 +242,7 @@ fn band(specification: &Specification, natural: f64) -> Result<([f64; 2], &'stat
     let [from, to] = ends;
     let unit = own.or(by_f1).unwrap_or("rad/s");
     if from > 0.0 && from < to && to.is_finite() {
-        return Ok((ends, unit));
+        return without_unit(typed, own, ends, natural).map_or(Ok((ends, unit)), Err);
     }
     let [low, high] = [from.min(to), from.max(to)].map(|end| rounded(end / radians(unit), 6));
     let problem = if from > to && to > 0.0 {
@@ -252,6 +252,22 @@ fn band(specification: &Specification, natural: f64) -> Result<([f64; 2], &'stat
     };
     Err(typed.refused("band", problem))
 }
+
+/// That a band without a unit, which is in rad/s, holds the natural frequency only if it is meant in Hz.
+fn without_unit(typed: &Typed, unit: Option<&str>, [from, to]: [f64; 2], natural: f64) -> Option<Error> {
+    let holds = |size: f64| (size * from..=size * to).contains(&natural);
+    if unit.is_some() || holds(1.0) || !holds(TAU) {
+        return None;
+    }
+    let [low, high, own] = [from, to, natural].map(|omega| rounded(omega, 6));
+    Some(typed.refused(
+        "band",
+        format!("without a unit it is {low}..{high} rad/s, which leaves out the structure's own {own} rad/s: write {low}..{high}Hz if that is what is meant, else {low}..{high}rad/s"),
+    ))
+}
+
+/// Share of the structure's mass below which a number without a unit is a slip.
+const LIGHT: f64 = 1e-3;
 
 /// Mass of the damper, kg.
 fn mass(specification: &Specification, m1: f64) -> Result<f64, Error> {
@@ -269,6 +285,14 @@ fn mass(specification: &Specification, m1: f64) -> Result<f64, Error> {
             "{} is more than the structure's {} kg: a damper is lighter; 1 to 5 % are usual, for instance --mass 2%",
             typed.text,
             rounded(m1, 6)
+        );
+        return Err(typed.refused("mass", problem));
+    }
+    if is_bare(&typed.text) && mass < LIGHT * m1 {
+        let (own, share) = (rounded(mass, 6), percent(mass / m1));
+        let meant = rounded(if mass < 1.0 { 100.0 * mass } else { mass }, 6);
+        let problem = format!(
+            "{own} is {own} kg, {share} of the structure: write {meant}% if that is what is meant, else {own}kg"
         );
         return Err(typed.refused("mass", problem));
     }

@@ -11,8 +11,8 @@ use crate::tune::descent::descend;
 use crate::tune::objective::{coarse, kept, searched};
 use crate::{Error, Observer, Progress};
 use rayon::prelude::*;
-use retune_model::{Measure, Scene};
-use retune_optim::{Bounds, INFEASIBLE, Parameter, Point};
+use retune_model::{Coupled, Measure, Scene};
+use retune_optim::{Bounds, INFEASIBLE, Parameter, Point, Slopes};
 use retune_store::Journal;
 use retune_study::{Search, Study};
 use std::sync::{Mutex, PoisonError};
@@ -37,6 +37,8 @@ const GAPS: [f64; 3] = [0.4, 1.0, 2.5];
 const WORTH: f64 = 4.0;
 /// Descents: from the best of each of so many families of designs, those that came nearest.
 const DESCENTS: usize = 4;
+/// Most evaluations of each, so that the answer takes seconds on every machine and the same bytes on each: most need fewer than 60.
+const PATIENCE: u64 = 150;
 
 /// What a search for an SSVI NES comes to.
 pub(super) struct Ends {
@@ -73,7 +75,7 @@ fn starts(study: &Study, search: &Search, tmd: &Candidate) -> Vec<Start> {
     all.into_iter().map(within).collect()
 }
 
-/// A progress that tells the best value so far.
+/// A progress that tells the best value so far. Known designs are told apart by looser runs, whose values are not told.
 struct Told {
     bar: Box<dyn Progress>,
     best: Mutex<f64>,
@@ -81,23 +83,24 @@ struct Told {
 }
 
 impl Told {
-    fn new(bar: Box<dyn Progress>, study: &Study) -> Self {
-        Self { bar, best: Mutex::new(INFEASIBLE), quantity: study.quantity() }
+    fn new(bar: Box<dyn Progress>, study: &Study, best: f64) -> Self {
+        let told = Self { bar, best: Mutex::new(INFEASIBLE), quantity: study.quantity() };
+        told.tell(best);
+        told
     }
 
-    /// One more has been evaluated, or has come to this value.
-    fn done(&self, value: f64) {
+    fn tell(&self, value: f64) {
         let mut best = self.best.lock().unwrap_or_else(PoisonError::into_inner);
         if value < *best {
             *best = value;
             self.bar.best(&sized(value, self.quantity.unit()));
         }
-        drop(best);
-        self.bar.inc(1);
     }
 
-    fn finish(&self) {
-        self.bar.finish();
+    /// One more has come to this value.
+    fn done(&self, value: f64) {
+        self.tell(value);
+        self.bar.inc(1);
     }
 }
 
@@ -114,6 +117,11 @@ fn so_far(study: &Study, value: f64, x: &[f64]) -> String {
     format!("SSVI NES so far: {value}, {}", design.join(", "))
 }
 
+/// Whether contacts lose energy: exact derivatives then take minutes.
+pub(super) fn is_lossy(Scene { primary, forcing, damper }: &Scene) -> bool {
+    damper.is_some_and(|damper| Coupled::new(primary, forcing, &damper).is_lossy())
+}
+
 /// Searches from what is known; `beside` more starts, as the end of a search under other limits.
 pub(super) fn best(
     study: &Study,
@@ -124,7 +132,8 @@ pub(super) fn best(
 ) -> Result<Ends, Error> {
     let search = study.search().map_err(Error::rule(study))?;
     debug_assert_eq!(search.variables, Parameter::PAPER);
-    let objective = searched(study, &search, &search.variables);
+    let exact = searched(study, &search, &search.variables).within(PATIENCE);
+    let objective = if is_lossy(&study.scene) { exact.sloping(Slopes::Differences) } else { exact };
     let loose = coarse(study, &search, &search.variables);
     // Under other limits it is no answer to what was asked.
     let asked = beside.is_empty();
@@ -133,10 +142,10 @@ pub(super) fn best(
     let most = if tmd.feasible { WORTH * tmd.goal } else { f64::INFINITY };
     let name = format!("{stage} known");
     let value = kept(&loose, journal, &name, || ());
-    let bar = Told::new(watch.progress("SSVI NES, known designs", starts.len() as u64), study);
+    let bar = watch.progress("SSVI NES, known designs", starts.len() as u64);
     let tried = |start: &Start| {
         let value = value(&start.1, most);
-        bar.done(value);
+        bar.inc(1);
         value
     };
     let values: Vec<f64> = starts.par_iter().map(tried).collect();
@@ -144,8 +153,10 @@ pub(super) fn best(
     bar.finish();
     journal.check()?;
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    if let Some((value, (_, x))) = all.first().filter(|(value, _)| asked && *value < most) {
-        watch.so_far(&so_far(study, *value, x))?;
+    let mut known = INFEASIBLE;
+    if let Some((_, (_, x))) = all.first().filter(|(value, _)| asked && *value < most) {
+        known = kept(&objective, journal, &format!("{stage} best known"), || ())(x, f64::INFINITY);
+        watch.so_far(&so_far(study, known, x))?;
     }
     // Descents from outside limits are long.
     let descents = if tmd.feasible { DESCENTS } else { DESCENTS / 2 };
@@ -155,7 +166,7 @@ pub(super) fn best(
             worth.push(start);
         }
     }
-    let bar = Told::new(watch.progress("SSVI NES", worth.len() as u64), study);
+    let bar = Told::new(watch.progress("SSVI NES", worth.len() as u64), study, known);
     let descent = |(_, x): &&Start| {
         let stage = format!("{stage} descent");
         let Point { x, value } = if study.scene.forcing.is_transient() {
@@ -167,7 +178,7 @@ pub(super) fn best(
         (value, x)
     };
     let mut ends: Vec<(f64, Vec<f64>)> = worth.par_iter().map(descent).collect();
-    bar.finish();
+    bar.bar.finish();
     journal.check()?;
     ends.sort_by(|a, b| a.0.total_cmp(&b.0));
     if let Some((value, x)) = ends.first().filter(|_| asked) {

@@ -2,8 +2,8 @@
 
 use retune_jobs::design::{Driving, Requirements, Specification, Typed, design};
 use retune_jobs::tune::optimize;
-use retune_jobs::{Error, Request, Silent};
-use retune_model::{Coupled, Design, Measure, NonNegative, Parameter};
+use retune_jobs::{Error, Observer, Progress, Request, Silent};
+use retune_model::{Coupled, Design, Measure, NonNegative, Parameter, unit};
 use retune_optim::{Options, Scaling, minimize};
 use retune_solver::{Method, Settings, Window, e1_max};
 use retune_study::{Refine, Study};
@@ -13,6 +13,7 @@ use serde_json::{Value, json};
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::{Arc, Mutex};
 
 fn asked(specification: Value) -> Specification {
     serde_json::from_value(specification).expect("specification")
@@ -244,6 +245,14 @@ fn contract_slips_are_refused_with_what_to_give() {
         (json!({ "base": "1 mm" }), "--base: force is given too: leave one of them out"),
         (json!({ "band": "2.2Hz..1.8Hz" }), "--band: the lower end comes first: write 1.8..2.2Hz"),
         (json!({ "band": "2 Hz" }), "--band: \"2 Hz\" is no band: give its ends, for instance 1.8Hz..2.2Hz"),
+        (
+            json!({ "band": "1.8..2.2" }),
+            "--band: without a unit it is 1.8..2.2 rad/s, which leaves out the structure's own 12.5664 rad/s: write 1.8..2.2Hz if",
+        ),
+        (
+            json!({ "mass": 2 }),
+            "--mass: 2 is 2 kg, 0.005 % of the structure: write 2% if that is what is meant, else 2kg",
+        ),
         (json!({ "mass": "50 t" }), "--mass: 50 t is more than the structure's 40000 kg"),
         (json!({ "k1_error": 10 }), "--k1-error: 10 is 1000 %: write 10% if that is what is meant"),
         (json!({ "goal": "stroke" }), "--goal: \"stroke\" is none: give one of E1max, x1max"),
@@ -369,4 +378,52 @@ fn reference_the_ssvi_nes_of_a_design_has_the_energy_that_other_methods_find() {
         }
         assert!(impacts > 3, "{impacts}: {requirements:?}");
     }
+}
+
+/// What a search tells of its best, J, in the order in which it does.
+#[derive(Clone, Default)]
+struct Told(Arc<Mutex<Vec<f64>>>);
+
+impl Told {
+    fn keep(&self, words: &str) {
+        let value = unit::read(words, Measure::Energy.units()).expect("an energy");
+        self.0.lock().expect("no panic").push(value);
+    }
+}
+
+impl Progress for Told {
+    fn best(&self, words: &str) {
+        self.keep(words);
+    }
+}
+
+impl Observer for Told {
+    fn so_far(&self, line: &str) -> Result<(), Error> {
+        let value = line.strip_prefix("SSVI NES so far: E1max ").and_then(|rest| rest.split_once(','));
+        self.keep(value.expect("a value").0);
+        Ok(())
+    }
+    fn progress(&self, _stage: &'static str, _count: u64) -> Box<dyn Progress> {
+        Box::new(self.clone())
+    }
+}
+
+/// With walls that lose energy, through which exact derivatives take minutes, an answer takes seconds: of a certain number of evaluations,
+/// not of a time. What is told of the best on the way never rises.
+#[test]
+fn contract_walls_that_lose_energy_are_answered_within_a_number_of_evaluations() {
+    let rig = json!({
+        "m1": "2 kg", "f1": "8 Hz", "zeta": "0.5 %", "force": "1 N", "mass": "5 %", "wall": "R=20mm,steel,e=0.6"
+    });
+    let desk = Desk::new();
+    let request = Request { out: Some(desk.path("out")), ..Request::new(&desk.path("out")) };
+    let told = Told::default();
+    drop(good(design(&good(asked(rig).requirements()), &request, &told)));
+    let told = told.0.lock().expect("no panic").clone();
+    assert!(told.len() > 3 && told.is_sorted_by(|before, after| after <= before), "{told:?}");
+    let answer = desk.read_json("out/design.json");
+    let evaluated = answer["designs_evaluated"].as_u64().expect("a number");
+    assert!((58..=58 + 4 * 150).contains(&evaluated), "{evaluated}");
+    assert!(largest(&answer, 2, "E1max") < 1.01 * told[told.len() - 1], "{answer}");
+    assert!(largest(&answer, 2, "E1max") < 1.6 * largest(&answer, 1, "E1max"), "{answer}");
 }

@@ -141,7 +141,7 @@ pub fn draw(path: &Path, table: &str) -> Any<()> {
     let x = || Axis::log("stiffness of the contact, times that of the SSVI", (1e-2, 1e8));
     let mut panels = Vec::new();
     for (what, column, label, range) in [
-        ("Error of the final state", "final_state_error", "relative error", (1e-10, 10.0)),
+        ("Final state", "final_state_error", "relative error", (1e-10, 10.0)),
         ("Cost", "evaluations", "evaluations of the right-hand side", (1e2, 1e6)),
     ] {
         for (group, methods) in GROUPS {

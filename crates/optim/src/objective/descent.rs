@@ -20,6 +20,9 @@ const BOXES: usize = 8;
 /// locked to the structure there, and runs take ever more steps.
 const LOCKED: [f64; 2] = [1e3, 3e2];
 
+/// Of a design that was not evaluated.
+const UNKNOWN: Height = Height { worst: f64::INFINITY, violation: f64::INFINITY };
+
 /// The foot of a slope.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Foot {
@@ -37,6 +40,9 @@ impl DesignObjective {
         let counts = [const { Cell::new(0) }; 2];
         let from = Cell::new(f64::NAN);
         let evaluate = |x: &[f64], cutoff: f64| {
+            if counts[0].get() >= self.patience {
+                return (UNKNOWN, Vec::new()); // no step to there is taken, and the descent ends
+            }
             let found = self.height_and_runs(x, cutoff);
             counts[0].set(counts[0].get() + 1);
             counts[1].set(counts[1].get() + u64::from(found.0.violation > 0.0));
@@ -46,8 +52,7 @@ impl DesignObjective {
             found
         };
         let gain = if self.goal().objective.is_steady() { STEADY_GAIN } else { GAIN };
-        let (mut at, mut height) =
-            (start.to_vec(), Height { worst: f64::INFINITY, violation: f64::INFINITY });
+        let (mut at, mut height) = (start.to_vec(), UNKNOWN);
         for _ in 0..BOXES {
             let space = Space((0..at.len()).map(|i| self.side(i, bounds[i], at[i])).collect());
             let (end, found) = if self.goal().has_pieces() {

@@ -3,6 +3,7 @@
 use super::evaluation::{Evaluation, Run};
 use super::limits::INFEASIBLE;
 use super::motions::{Known, Sought};
+use super::pieces::Slopes;
 use super::runs::{FREE, Hooks, Proceed};
 use super::spec::Goal;
 use super::unusable::Unusable;
@@ -57,6 +58,9 @@ pub struct DesignObjective {
     counts: [AtomicU64; 2],
     /// The motions that are followed; none where all are looked for at each design.
     known: Option<Known>,
+    slopes: Slopes,
+    /// Most evaluations of a descent.
+    pub(super) patience: u64,
 }
 
 impl DesignObjective {
@@ -69,8 +73,8 @@ impl DesignObjective {
         settings: Settings,
     ) -> Self {
         let goal = goal.into();
-        let (failures, counts, known) = Default::default();
-        Self { scene, damper, variables, goal, settings, failures, counts, known }
+        let (failures, counts, known, slopes) = Default::default();
+        Self { scene, damper, variables, goal, settings, failures, counts, known, slopes, patience: u64::MAX }
     }
 
     /// The goal.
@@ -161,7 +165,8 @@ impl DesignObjective {
     /// The peaks of the `runs` of [`Self::height_and_runs`], with their derivatives.
     pub fn pieces(&self, design: &[f64], runs: &[Run]) -> Vec<Piece> {
         let scene = self.scene(design).ok();
-        scene.map_or_else(Vec::new, |scene| self.goal.pieces(&scene, &self.settings, runs, &self.variables))
+        let by = (self.variables.as_slice(), self.slopes);
+        scene.map_or_else(Vec::new, |scene| self.goal.pieces(&scene, &self.settings, runs, by))
     }
 
     /// Counts a value that [`Self::value`] returned in an earlier run of the same search, so that [`Self::counts`] are those of an
@@ -182,6 +187,18 @@ impl DesignObjective {
     #[must_use]
     pub fn following(self) -> Self {
         Self { known: Some(Known::default()), ..self }
+    }
+
+    /// The same with derivatives of its [pieces](Self::pieces) by another way.
+    #[must_use]
+    pub fn sloping(self, slopes: Slopes) -> Self {
+        Self { slopes, ..self }
+    }
+
+    /// The same whose [descents](Self::descend) end after so many evaluations.
+    #[must_use]
+    pub fn within(self, patience: u64) -> Self {
+        Self { patience, ..self }
     }
 
     /// Learns the motions at a design, which are followed from there to others; gives the value with all that are found there.
