@@ -1,5 +1,6 @@
 //! What hunts need that no test does: those that take minutes at least, and draws.
 
+pub mod durations;
 pub mod robust;
 pub mod scenes;
 pub mod walk;

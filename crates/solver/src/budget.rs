@@ -12,12 +12,11 @@ const FEW: u64 = 1000;
 /// A run that would need more than this many times its limit is given up. Less may be a burst of contacts that ends.
 const HOPELESS: f64 = 100.0;
 
-/// Steps of flight that take as long as an evaluation of the equations, with its share of what is done at each step. The default limit of
-/// 20 million steps is 0.4 s of flight in which nothing comes near a largest value; where every step is searched for those of all quantities, as with
-/// numbers ten orders of magnitude apart, a run was seen to take two minutes before it was given up.
+/// Steps of flight that take as long as an evaluation of the equations, or a look of an observer, with its share of what is done at each step: with
+/// the default limit of 20 million steps no run takes more than some seconds (`just lab hunt-durations`).
 const STEPS_OF_AN_EVALUATION: u64 = 4;
 
-/// Evaluations that a run may make however few steps it may take.
+/// Evaluations and looks that a run may make however few steps it may take.
 const LEAST_EVALUATIONS: u64 = 5_000_000;
 
 /// How a run chooses its steps.
@@ -51,7 +50,7 @@ impl Pace {
 /// The number of steps that a stretch of a run may take, and the progress that they must make.
 ///
 /// The number of steps that a bouncing damper needs is not known beforehand. So a run is refused once it has used up its steps or made
-/// a quarter as many evaluations (of the equations of contact, or by a method that chooses its steps; at least 5 million), and after 262,144 of either if at its present
+/// a quarter as many evaluations (of the equations of contact, or by a method that chooses its steps, and looks of its observers; at least 5 million), and after 262,144 of either if at its present
 /// rate it would need a hundred times its limit (or a hundred times 262,144, if the limit is lower). Raising `max_steps` raises all.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {

@@ -38,7 +38,7 @@ pub enum SolverError {
         "the run needed more than {} (t = {} s); raise max_steps",
         match evaluations {
             None => format!("{limit} steps"),
-            Some(most) => format!("{most} evaluations of its equations, the most with max_steps = {limit}"),
+            Some(most) => format!("{most} evaluations of its equations and quantities, the most with max_steps = {limit}"),
         },
         plain(*.t)
     )]

@@ -277,6 +277,13 @@ impl Observer<4> for Peak<'_> {
             Self::Damper(range, _) => range.seam(),
         }
     }
+    fn looks(&self) -> u64 {
+        match self {
+            Self::Energy(e1) => Observer::<4>::looks(e1),
+            Self::Motion(size) => size.looks(),
+            Self::Damper(range, _) => range.looks(),
+        }
+    }
     fn satisfied(&self) -> bool {
         match self {
             Self::Energy(e1) => Observer::<4>::satisfied(e1),

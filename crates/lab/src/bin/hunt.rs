@@ -3,7 +3,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 use retune_lab::Any;
-use retune_lab::hunts::{robust, scenes, walk};
+use retune_lab::hunts::{durations, robust, scenes, walk};
 use retune_testkit::hunt as hunts;
 use retune_testkit::hunt::largest::Scenes;
 use retune_testkit::hunt::{
@@ -12,7 +12,7 @@ use retune_testkit::hunt::{
 use std::path::Path;
 use std::process::ExitCode;
 
-const USAGE: &str = "hunt NAME [DRAWS]: largest, losses, held, histories, rigid, repeats, peaks, needs, robust (DRAWS or FIRST..LAST), branches, dampers, dashpots, walk (a share of its \
+const USAGE: &str = "hunt NAME [DRAWS]: largest, losses, held, histories, rigid, repeats, peaks, needs, robust (DRAWS or FIRST..LAST), branches, dampers, dashpots, durations, walk (a share of its \
                      steps), scenes, settled, bands, kills";
 
 fn main() -> Any<ExitCode> {
@@ -74,6 +74,7 @@ fn main() -> Any<ExitCode> {
             show(PERIODS, branches::periods(&stiffnesses));
             show(FROM_REST, branches::from_rest(many(3001)?));
         }
+        "durations" => show(include_str!("../hunts/durations.md"), durations::durations(many(3000)?)),
         "dampers" => show(include_str!("../hunts/dampers.md"), dampers::dampers(many(7)?, 500)),
         "walk" => show(WALK, walk::walk(draws.map_or(Ok(1.0), str::parse)?)?),
         "scenes" => show("", hunts::scenes::scenes(&scenes::drawn(many(30_000)?))),

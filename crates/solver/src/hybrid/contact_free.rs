@@ -63,7 +63,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
     /// # Errors
     /// [`SolverError::TooManySteps`], [`SolverError::TooSlow`], [`SolverError::TooFast`], [`SolverError::NonFinite`].
     pub fn propagate(&mut self, to: f64, observer: &mut impl Observer<N>) -> Result<(), SolverError> {
-        let budget = self.budget(to);
+        let budget = self.budget(to, observer.looks());
         if self.system.structure().history().is_none() {
             return self.go(to, observer, budget);
         }
@@ -105,7 +105,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
                     i = together;
                     self.work.steps += PIECES as u64;
                     (self.now.t, self.now.y) = (block.end, block.last());
-                    budget.check(&self.work, self.now.t)?;
+                    budget.check(&self.work.and(observer.looks()), self.now.t)?;
                     if !self.now.y.iter().all(|v| v.is_finite()) {
                         return Err(SolverError::NonFinite { t: self.now.t });
                     }
@@ -118,7 +118,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
             self.now = steps.knot(LANES);
             i += LANES;
             self.work.steps += LANES as u64;
-            budget.check(&self.work, self.now.t)?;
+            budget.check(&self.work.and(observer.looks()), self.now.t)?;
             if !self.now.y.iter().all(|v| v.is_finite()) {
                 return Err(SolverError::NonFinite { t: self.now.t });
             }
@@ -129,8 +129,8 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
         Ok(())
     }
 
-    fn budget(&self, to: f64) -> Budget {
-        Budget::new(self.flow.pace(), self.max_steps, self.work, [self.now.t, to])
+    fn budget(&self, to: f64, looks: u64) -> Budget {
+        Budget::new(self.flow.pace(), self.max_steps, self.work.and(looks), [self.now.t, to])
     }
 
     fn go(&mut self, to: f64, observer: &mut impl Observer<N>, budget: Budget) -> Result<(), SolverError> {
@@ -158,7 +158,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
                 self.now = *step.ends()[1];
             }
             self.work.steps += steps.count().max(1) as u64;
-            budget.check(&self.work, now.t)?;
+            budget.check(&self.work.and(observer.looks()), now.t)?;
             if !self.now.y.iter().all(|v| v.is_finite()) {
                 return Err(SolverError::NonFinite { t: now.t });
             }
@@ -195,7 +195,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
             self.now = *step.ends()[1];
             clock.count(1);
             self.work.steps += 1;
-            budget.check(&self.work, now.t)?;
+            budget.check(&self.work.and(observer.looks()), now.t)?;
             if !self.now.y.iter().all(|v| v.is_finite()) {
                 return Err(SolverError::NonFinite { t: now.t });
             }
@@ -244,7 +244,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
             self.now = start;
         }
         self.jump(window.from)?;
-        let budget = self.budget(window.to);
+        let budget = self.budget(window.to, 0);
         while self.now.t < window.to && !Observer::<N>::satisfied(&maximum) {
             let step = self.reduced.as_deref().map_or(self.flow.step(), |reduced| reduced.flow.step());
             let to = window.to.min(self.now.t + STRIDE * step);

@@ -56,7 +56,7 @@ impl Hybrid<'_> {
             let careful = seen < LANES;
             steps.keep(seen);
             self.work.steps += seen as u64 + u64::from(careful);
-            self.budget.check(&self.work, now.t)?;
+            self.budget.check(&self.work.and(observer.looks()), now.t)?;
             if seen > 0 {
                 observer.steps(&steps);
                 now = steps.knot(seen);
@@ -148,7 +148,7 @@ impl Hybrid<'_> {
                     return Ok(FlightEnd::Stopped(now));
                 }
                 self.work.steps += 1;
-                self.budget.check(&self.work, now.t)?;
+                self.budget.check(&self.work.and(observer.looks()), now.t)?;
                 let mut step = steps.step(number);
                 let mut touched = None;
                 if number >= open || remaining < whole {

@@ -21,7 +21,8 @@ impl Hybrid<'_> {
         observer: &mut impl Observer<4>,
     ) -> Result<Motion, SolverError> {
         self.flow.check_step(from.t, to)?;
-        self.budget = Budget::new(self.flow.pace(), self.max_steps, self.work, [from.t, to]);
+        self.budget =
+            Budget::new(self.flow.pace(), self.max_steps, self.work.and(observer.looks()), [from.t, to]);
         self.end = to;
         if self.system.bare().history().is_none() {
             return self.within(from, to, observer);

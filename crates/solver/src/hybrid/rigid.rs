@@ -53,7 +53,7 @@ impl Hybrid<'_> {
                 FlightEnd::TouchDown(side, touch) => {
                     (now, phase) = self.strike(walls, side, touch, from.t, observer);
                     self.work.steps += 1;
-                    self.budget.check(&self.work, now.t)?;
+                    self.budget.check(&self.work.and(observer.looks()), now.t)?;
                 }
             }
             if observer.satisfied() || now.t >= to {
@@ -134,7 +134,7 @@ impl Hybrid<'_> {
             }
             now = *step.ends()[1];
             self.work.steps += 1;
-            self.budget.check(&self.work, now.t)?;
+            self.budget.check(&self.work.and(observer.looks()), now.t)?;
             if end.is_some() {
                 return Ok(HoldEnd::Released(now));
             }

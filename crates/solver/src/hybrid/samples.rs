@@ -55,7 +55,7 @@ impl Hybrid<'_> {
                 if let Some((end, y)) = self.pass(&force, i, &now.y, to, observer) {
                     (now.t, now.y, i, together) = (end, y, i + PIECES, i + PIECES);
                     self.work.steps += PIECES as u64;
-                    self.budget.check(&self.work, now.t)?;
+                    self.budget.check(&self.work.and(observer.looks()), now.t)?;
                     continue;
                 }
                 together = i + PIECES;
@@ -71,7 +71,7 @@ impl Hybrid<'_> {
             }
             steps.keep(open);
             self.work.steps += open as u64;
-            self.budget.check(&self.work, now.t)?;
+            self.budget.check(&self.work.and(observer.looks()), now.t)?;
             observer.steps(&steps);
             now = steps.knot(open);
             i += open;

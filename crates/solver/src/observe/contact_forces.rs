@@ -88,4 +88,7 @@ impl Observer<4> for ContactForces<'_> {
     fn seam(&mut self) {
         self.walls.seam();
     }
+    fn looks(&self) -> u64 {
+        Observer::<4>::looks(&self.walls)
+    }
 }

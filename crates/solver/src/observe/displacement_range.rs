@@ -105,4 +105,7 @@ impl Observer<4> for DisplacementRange<'_> {
         self.ends.seam();
         self.forces.seam();
     }
+    fn looks(&self) -> u64 {
+        Observer::<4>::looks(&self.ends) + self.forces.looks()
+    }
 }

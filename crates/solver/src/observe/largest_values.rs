@@ -92,4 +92,7 @@ impl Observer<4> for LargestValues<'_> {
         self.motions.seam();
         self.range.seam();
     }
+    fn looks(&self) -> u64 {
+        Observer::<4>::looks(&self.energy) + self.motions.looks() + self.range.looks()
+    }
 }

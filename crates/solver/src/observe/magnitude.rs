@@ -64,4 +64,7 @@ impl<const N: usize, Q: Quantity<N>> Observer<N> for Magnitude<Q> {
     fn satisfied(&self) -> bool {
         self.0.iter().any(Observer::satisfied)
     }
+    fn looks(&self) -> u64 {
+        Observer::<N>::looks(&self.0)
+    }
 }

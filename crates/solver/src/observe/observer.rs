@@ -97,6 +97,10 @@ pub trait Observer<const N: usize> {
     fn satisfied(&self) -> bool {
         false
     }
+    /// How much it has looked at, in units of some 10 to 30 ns of a processor of today.
+    fn looks(&self) -> u64 {
+        0
+    }
 }
 
 /// The observer that sees nothing: for the transient before a window.
@@ -141,6 +145,9 @@ impl<const N: usize, A: Observer<N>, B: Observer<N>> Observer<N> for (A, B) {
     fn satisfied(&self) -> bool {
         self.0.satisfied() || self.1.satisfied()
     }
+    fn looks(&self) -> u64 {
+        self.0.looks() + self.1.looks()
+    }
 }
 
 impl<const N: usize, O: Observer<N>> Observer<N> for &mut O {
@@ -171,6 +178,9 @@ impl<const N: usize, O: Observer<N>> Observer<N> for &mut O {
     }
     fn satisfied(&self) -> bool {
         (**self).satisfied()
+    }
+    fn looks(&self) -> u64 {
+        (**self).looks()
     }
 }
 
@@ -205,6 +215,9 @@ macro_rules! for_each_in {
             }
             fn satisfied(&self) -> bool {
                 self.iter().any(|observer| observer.satisfied())
+            }
+            fn looks(&self) -> u64 {
+                self.iter().map(Observer::looks).sum()
             }
         }
     };

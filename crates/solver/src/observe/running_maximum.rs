@@ -221,6 +221,10 @@ where
     fn satisfied(&self) -> bool {
         self.search.record.value > self.cutoff
     }
+
+    fn looks(&self) -> u64 {
+        self.search.looks
+    }
 }
 
 #[cfg(test)]

@@ -22,6 +22,8 @@ pub struct Search<Q> {
     sharp: bool,
     /// A bound on the largest value where a search ended before its bounds could decide.
     undecided: f64,
+    /// What has been looked at, see [`Observer::looks`](super::observer::Observer::looks).
+    pub looks: u64,
 }
 
 /// An assumption for motions without a known bound (the interpolants of general methods): `R` relative to the variation at both ends,
@@ -36,6 +38,11 @@ const ROUNDING: f64 = 8.0;
 /// orders of magnitude apart that slopes are lost in rounding.
 const HALVINGS: u32 = 64;
 
+/// What the bounds of a segment count, a sharp bound, and a moment inside a segment, which is reached by a step of its own in a contact.
+const SEGMENT: u64 = 2;
+const BOUND: u64 = 24;
+const MOMENT: u64 = 40;
+
 /// Halvings after which a search asks for the sharp bound.
 const SHARP: u32 = 3;
 
@@ -48,6 +55,7 @@ impl<Q> Search<Q> {
             halvings: 0,
             sharp: false,
             undecided: f64::NEG_INFINITY,
+            looks: 0,
         }
     }
 
@@ -92,6 +100,7 @@ impl<Q> Search<Q> {
         Q: Quantity<N>,
     {
         (self.halvings, self.sharp) = (HALVINGS, false);
+        self.looks += SEGMENT;
         self.search(segment, a, b, remainder);
     }
 
@@ -155,6 +164,7 @@ impl<Q> Search<Q> {
             // As often as that of this stretch says little.
             if !self.sharp || says_little(remainder, highest, a, b) {
                 self.sharp = true;
+                self.looks += BOUND;
                 let sharper = self.quintic_error(segment, a, b, true);
                 if sharper < remainder {
                     return self.search(segment, a, b, sharper);
@@ -170,10 +180,11 @@ impl<Q> Search<Q> {
         }
     }
 
-    fn look<const N: usize>(&self, segment: &impl Segment<N>, theta: f64) -> Place<N>
+    fn look<const N: usize>(&mut self, segment: &impl Segment<N>, theta: f64) -> Place<N>
     where
         Q: Quantity<N>,
     {
+        self.looks += MOMENT;
         let knot = segment.at(theta);
         (theta, knot, in_theta(rates_in(segment, &knot, &self.quantity), knot.clock))
     }

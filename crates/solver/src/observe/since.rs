@@ -66,6 +66,9 @@ impl<O: Observer<4>> Observer<4> for Since<O> {
     fn seam(&mut self) {
         self.observer.seam();
     }
+    fn looks(&self) -> u64 {
+        self.observer.looks()
+    }
 }
 
 /// The part of a segment after a moment inside it.

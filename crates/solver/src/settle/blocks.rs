@@ -137,4 +137,7 @@ impl Observer<4> for Blocks<'_> {
     fn satisfied(&self) -> bool {
         self.settled.is_some()
     }
+    fn looks(&self) -> u64 {
+        self.now.looks()
+    }
 }

@@ -42,7 +42,8 @@ pub fn integrate(
     let mut contact =
         Contact { shortest: plan.h * 1e-12, touch_down: from.t, equations, to, rtol, budget, plan, start, y };
     loop {
-        let Accepted { slope, length, next, end, is_last, lifts_off, parts } = contact.step(work)?;
+        let Accepted { slope, length, next, end, is_last, lifts_off, parts } =
+            contact.step(work, observer.looks())?;
         let piece = Piece {
             equations: &contact.equations,
             touch_down: contact.touch_down,
@@ -104,7 +105,7 @@ struct Accepted {
 
 impl Contact {
     /// The next step, of the length that its error allows. It is compiled once, not once for every observer.
-    fn step(&mut self, work: &mut Work) -> Result<Accepted, SolverError> {
+    fn step(&mut self, work: &mut Work, looks: u64) -> Result<Accepted, SolverError> {
         let Self { equations, plan, y, rtol, touch_down, .. } = self;
         let (rtol, touch_down) = (*rtol, *touch_down);
         loop {
@@ -136,14 +137,14 @@ impl Contact {
                 if !y.iter().all(|v| v.is_finite()) {
                     return Err(SolverError::NonFinite { t });
                 }
-                self.budget.check(work, t)?;
+                self.budget.check(&work.and(looks), t)?;
                 if plan.h < self.shortest {
                     return Err(SolverError::Contact { t });
                 }
                 continue;
             }
             work.steps += 1;
-            self.budget.check(work, t)?;
+            self.budget.check(&work.and(looks), t)?;
             let (mut next, mut length) = (tried.y, h);
             if let Some(wall) = wall {
                 (next, length) = (wall, to_wall(&wall));
