@@ -32,7 +32,7 @@ pub(super) fn write(fronts: &Fronts, directory: &Directory) -> Result<(), Error>
     let figure = Block::figure("front.svg", draw::front(fronts), caption);
     sections.push(("trade", "The trade", vec![Block::words(words), figure]));
     let certified: Vec<String> = fronts.certified.iter().map(|one| certificate(fronts, one)).collect();
-    let certified = if certified.is_empty() {
+    let mut certified = if certified.is_empty() {
         vec![Block::words(
             "No design that strikes a wall is better than the first damper under the same bound.",
         )]
@@ -40,7 +40,8 @@ pub(super) fn write(fronts: &Fronts, directory: &Directory) -> Result<(), Error>
         vec![Block::words(MOTIONS), Block::List(certified)]
     };
     let certificates = fronts.certified.iter().map(|one| one.file.clone()).collect();
-    sections.push(("certified", "Certified", [certified, vec![Block::Files(certificates)]].concat()));
+    certified.push(Block::Files(certificates));
+    sections.push(("certified", "Certified", certified));
     let page = Document {
         title: format!("What the {} is good for", names.last().unwrap_or(&"")),
         command: "retune fronts",
