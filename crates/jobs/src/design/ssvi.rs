@@ -41,6 +41,8 @@ const DESCENTS: usize = 4;
 /// whose contacts lose energy take several times as long.
 const PATIENCE: u64 = 150;
 const PATIENCE_WITH_LOSS: u64 = 60;
+/// Samples of the band that a search looks at there, with the peaks between them; what it comes to is measured on all samples of the study.
+const SAMPLES_WITH_LOSS: usize = 16;
 
 /// What a search for an SSVI NES comes to.
 pub(super) struct Ends {
@@ -140,6 +142,16 @@ pub(super) fn is_lossy(Scene { primary, forcing, damper }: &Scene) -> bool {
     damper.is_some_and(|damper| Coupled::new(primary, forcing, &damper).is_lossy())
 }
 
+/// The study by which a search goes.
+fn sought(study: &Study) -> Study {
+    let mut sought = study.clone();
+    let band = sought.optimize.as_mut().and_then(|optimize| optimize.objective.omega.as_mut());
+    if let Some(band) = band.filter(|_| is_lossy(&study.scene)) {
+        band.samples = band.samples.min(SAMPLES_WITH_LOSS);
+    }
+    sought
+}
+
 /// Searches from what is known; `beside` more starts, as the end of a search under other limits.
 pub(super) fn best(
     study: &Study,
@@ -150,13 +162,14 @@ pub(super) fn best(
 ) -> Result<Ends, Error> {
     let search = study.search().map_err(Error::rule(study))?;
     debug_assert_eq!(search.variables, Parameter::PAPER);
-    let exact = searched(study, &search, &search.variables);
+    let sought = sought(study);
+    let exact = searched(&sought, &search, &search.variables);
     let objective = if is_lossy(&study.scene) {
         exact.sloping(Slopes::Differences).within(PATIENCE_WITH_LOSS)
     } else {
         exact.within(PATIENCE)
     };
-    let loose = coarse(study, &search, &search.variables);
+    let loose = coarse(&sought, &search, &search.variables);
     // Under other limits it is no answer to what was asked.
     let asked = beside.is_empty();
     let beside: Vec<Start> = beside.iter().cloned().enumerate().collect();
