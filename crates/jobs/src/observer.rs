@@ -45,6 +45,10 @@ pub trait Progress: Sync {
     fn inc(&self, _more: u64) {}
     /// The best so far, in words.
     fn best(&self, _words: &str) {}
+    /// Does what writes a line while the stage goes on, so that both can be read.
+    fn aside(&self, write: &mut dyn FnMut()) {
+        write();
+    }
     /// The stage is finished.
     fn finish(&self) {}
 }

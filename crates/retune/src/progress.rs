@@ -63,6 +63,10 @@ impl retune_jobs::Progress for Stage {
         self.bar.tick();
     }
 
+    fn aside(&self, write: &mut dyn FnMut()) {
+        self.bar.suspend(write);
+    }
+
     fn finish(&self) {
         self.bar.finish_and_clear();
     }

@@ -76,6 +76,13 @@ impl Candidate {
         })
     }
 
+    /// The [goal](Self::goal) of the scene of a study, to the same bits, with which alone a search ends; none where it has no bound.
+    pub fn goal_of(study: &Study) -> Option<f64> {
+        let needs = study.goal().own_needs(&study.scene, &study.solver.settings(), &|| true).ok()?;
+        let Need { value, .. } = needs.get(study.quantity());
+        (value.is_finite() && value > 0.0).then_some(value)
+    }
+
     /// Whether it stands under a shock or a record, so that no value has a frequency.
     pub fn is_transient(&self) -> bool {
         self.study.scene.forcing.is_transient()

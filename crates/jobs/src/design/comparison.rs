@@ -217,6 +217,7 @@ pub(super) fn compare(
             }
             best => (best.map(|(_, candidate)| candidate), None),
         };
+        ssvi::tell_compared(&found, ssvi.as_ref(), watch)?;
     }
     let other_sign = ssvi.as_ref().and_then(with_other_sign);
     let much_better = |certificate: &Certificate| (1.0 + SAME) * worst_nearby(certificate) < tmd.goal;

@@ -37,8 +37,12 @@ const GAPS: [f64; 3] = [0.4, 1.0, 2.5];
 const WORTH: f64 = 4.0;
 /// Descents: from the best of each of so many families of designs, those that came nearest.
 const DESCENTS: usize = 4;
-/// Most evaluations of each, so that the answer takes seconds on every machine and the same bytes on each: most need fewer than 60.
+/// Most evaluations of each, so that the answer takes seconds on every machine and the same bytes on each: most need fewer than 60. Runs
+/// whose contacts lose energy take several times as long.
 const PATIENCE: u64 = 150;
+const PATIENCE_WITH_LOSS: u64 = 60;
+/// Samples of the band that a search looks at there, with the peaks between them; what it comes to is measured on all samples of the study.
+const SAMPLES_WITH_LOSS: usize = 16;
 
 /// What a search for an SSVI NES comes to.
 pub(super) struct Ends {
@@ -75,37 +79,41 @@ fn starts(study: &Study, search: &Search, tmd: &Candidate) -> Vec<Start> {
     all.into_iter().map(within).collect()
 }
 
-/// A progress that tells the best value so far. Known designs are told apart by looser runs, whose values are not told.
-struct Told {
-    bar: Box<dyn Progress>,
+/// Who tells the best so far, by its value as the table has it: runs of a search are looser, and those that tell known designs apart most of
+/// all.
+struct Told<'a> {
+    bar: Box<dyn Progress + 'a>,
+    watch: &'a dyn Observer,
+    study: &'a Study,
+    /// Whether it is an answer to what was asked, which designs under other limits are not.
+    asked: bool,
     best: Mutex<f64>,
-    quantity: Measure,
 }
 
-impl Told {
-    fn new(bar: Box<dyn Progress>, study: &Study, best: f64) -> Self {
-        let told = Self { bar, best: Mutex::new(INFEASIBLE), quantity: study.quantity() };
-        told.tell(best);
-        told
-    }
-
-    fn tell(&self, value: f64) {
+impl Told<'_> {
+    /// One more has come to this value.
+    fn done(&self, value: f64, x: &[f64]) -> Result<(), Error> {
         let mut best = self.best.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut written = Ok(());
         if value < *best {
             *best = value;
-            self.bar.best(&sized(value, self.quantity.unit()));
+            self.bar.best(&sized(value, self.study.quantity().unit()));
+            if self.asked {
+                self.bar.aside(&mut || written = self.watch.so_far(&so_far(self.study, value, x)));
+            }
         }
-    }
-
-    /// One more has come to this value.
-    fn done(&self, value: f64) {
-        self.tell(value);
         self.bar.inc(1);
+        written
     }
 }
 
 /// The best of a stage, for who stops there.
 fn so_far(study: &Study, value: f64, x: &[f64]) -> String {
+    format!("SSVI NES so far: {}", words(study, value, x))
+}
+
+/// A design with its value.
+fn words(study: &Study, value: f64, x: &[f64]) -> String {
     let quantity = study.quantity();
     let value = if value < INFEASIBLE {
         format!("{} {}", quantity.name(), sized(value, quantity.unit()))
@@ -114,12 +122,34 @@ fn so_far(study: &Study, value: f64, x: &[f64]) -> String {
     };
     let one = |(parameter, x): (&Parameter, &f64)| format!("{parameter} = {}", sized(*x, parameter.unit()));
     let design: Vec<String> = Parameter::PAPER.iter().zip(x).map(one).collect();
-    format!("SSVI NES so far: {value}, {}", design.join(", "))
+    format!("{value}, {}", design.join(", "))
+}
+
+/// Tells the one that is compared, where it is not the best that was told: of those nearly as good the more certain, or the best that strikes.
+pub(super) fn tell_compared(
+    found: &Ends,
+    compared: Option<&Candidate>,
+    watch: &dyn Observer,
+) -> Result<(), Error> {
+    let is_told = |of: &&Candidate| found.ends.first().is_some_and(|(value, _)| *value == of.goal);
+    let Some(of) = compared.filter(|of| of.feasible && !is_told(of)) else { return Ok(()) };
+    let x = Parameter::PAPER.map(|parameter| of.damper().map_or(f64::NAN, |damper| parameter.get(&damper)));
+    watch.so_far(&format!("SSVI NES chosen: {}", words(&of.study, of.goal, &x)))
 }
 
 /// Whether contacts lose energy: exact derivatives then take minutes.
 pub(super) fn is_lossy(Scene { primary, forcing, damper }: &Scene) -> bool {
     damper.is_some_and(|damper| Coupled::new(primary, forcing, &damper).is_lossy())
+}
+
+/// The study by which a search goes.
+fn sought(study: &Study) -> Study {
+    let mut sought = study.clone();
+    let band = sought.optimize.as_mut().and_then(|optimize| optimize.objective.omega.as_mut());
+    if let Some(band) = band.filter(|_| is_lossy(&study.scene)) {
+        band.samples = band.samples.min(SAMPLES_WITH_LOSS);
+    }
+    sought
 }
 
 /// Searches from what is known; `beside` more starts, as the end of a search under other limits.
@@ -132,9 +162,14 @@ pub(super) fn best(
 ) -> Result<Ends, Error> {
     let search = study.search().map_err(Error::rule(study))?;
     debug_assert_eq!(search.variables, Parameter::PAPER);
-    let exact = searched(study, &search, &search.variables).within(PATIENCE);
-    let objective = if is_lossy(&study.scene) { exact.sloping(Slopes::Differences) } else { exact };
-    let loose = coarse(study, &search, &search.variables);
+    let sought = sought(study);
+    let exact = searched(&sought, &search, &search.variables);
+    let objective = if is_lossy(&study.scene) {
+        exact.sloping(Slopes::Differences).within(PATIENCE_WITH_LOSS)
+    } else {
+        exact.within(PATIENCE)
+    };
+    let loose = coarse(&sought, &search, &search.variables);
     // Under other limits it is no answer to what was asked.
     let asked = beside.is_empty();
     let beside: Vec<Start> = beside.iter().cloned().enumerate().collect();
@@ -153,10 +188,25 @@ pub(super) fn best(
     bar.finish();
     journal.check()?;
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut known = INFEASIBLE;
+    // Of a value of the search that breaks no limit, the one of the table.
+    let exactly = |value: f64, x: &[f64]| {
+        let exact = || {
+            let scene = objective.scene(x).ok()?;
+            Candidate::goal_of(&Study { scene, ..study.clone() })
+        };
+        let of = || exact().unwrap_or(value);
+        if value < INFEASIBLE {
+            journal.value(&format!("{stage} exactly"), x, f64::INFINITY, of, |_| ())
+        } else {
+            value
+        }
+    };
+    let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
     if let Some((_, (_, x))) = all.first().filter(|(value, _)| asked && *value < most) {
-        known = kept(&objective, journal, &format!("{stage} best known"), || ())(x, f64::INFINITY);
+        let known = kept(&objective, journal, &format!("{stage} best known"), || ())(x, f64::INFINITY);
+        let known = exactly(known, x);
         watch.so_far(&so_far(study, known, x))?;
+        ends.push((known, x.clone()));
     }
     // Descents from outside limits are long.
     let descents = if tmd.feasible { DESCENTS } else { DESCENTS / 2 };
@@ -166,7 +216,12 @@ pub(super) fn best(
             worth.push(start);
         }
     }
-    let bar = Told::new(watch.progress("SSVI NES", worth.len() as u64), study, known);
+    let known = ends.first().map_or(INFEASIBLE, |(value, _)| *value);
+    let bar = watch.progress("SSVI NES", worth.len() as u64);
+    if known < INFEASIBLE {
+        bar.best(&sized(known, study.quantity().unit()));
+    }
+    let told = Told { bar, watch, study, asked, best: Mutex::new(known.min(INFEASIBLE)) };
     let descent = |(_, x): &&Start| {
         let stage = format!("{stage} descent");
         let Point { x, value } = if study.scene.forcing.is_transient() {
@@ -174,16 +229,15 @@ pub(super) fn best(
         } else {
             descend(&objective, &search, x, journal, &stage).end
         };
-        bar.done(value);
-        (value, x)
+        let value = exactly(value, &x);
+        told.done(value, &x).map(|()| (value, x))
     };
-    let mut ends: Vec<(f64, Vec<f64>)> = worth.par_iter().map(descent).collect();
-    bar.bar.finish();
+    let found: Result<Vec<(f64, Vec<f64>)>, Error> = worth.par_iter().map(descent).collect();
+    told.bar.finish();
     journal.check()?;
+    let known = ends.first().map(|(_, x)| x.clone());
+    ends.extend(found?.into_iter().filter(|(_, x)| known.as_ref() != Some(x)));
     ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-    if let Some((value, x)) = ends.first().filter(|_| asked) {
-        watch.so_far(&so_far(study, *value, x))?;
-    }
     let tried = objective.counts().evaluations + loose.counts().evaluations;
     Ok(Ends { ends, tried: tried as usize })
 }

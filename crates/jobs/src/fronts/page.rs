@@ -32,13 +32,16 @@ pub(super) fn write(fronts: &Fronts, directory: &Directory) -> Result<(), Error>
     let figure = Block::figure("front.svg", draw::front(fronts), caption);
     sections.push(("trade", "The trade", vec![Block::words(words), figure]));
     let certified: Vec<String> = fronts.certified.iter().map(|one| certificate(fronts, one)).collect();
-    let certified = if certified.is_empty() {
-        Block::words("No design that strikes a wall is better than the first damper under the same bound.")
+    let mut certified = if certified.is_empty() {
+        vec![Block::words(
+            "No design that strikes a wall is better than the first damper under the same bound.",
+        )]
     } else {
-        Block::List(certified)
+        vec![Block::words(MOTIONS), Block::List(certified)]
     };
     let certificates = fronts.certified.iter().map(|one| one.file.clone()).collect();
-    sections.push(("certified", "Certified", vec![certified, Block::Files(certificates)]));
+    certified.push(Block::Files(certificates));
+    sections.push(("certified", "Certified", certified));
     let page = Document {
         title: format!("What the {} is good for", names.last().unwrap_or(&"")),
         command: "retune fronts",
@@ -47,6 +50,9 @@ pub(super) fn write(fronts: &Fronts, directory: &Directory) -> Result<(), Error>
     };
     pages::write(&page, directory)
 }
+
+/// What the names of motions say.
+const MOTIONS: &str = "A motion T, 1, 0 repeats every period T of the force, with one impact on the structure and none on the obstacle.";
 
 /// How the designs were found and compared.
 fn made(fronts: &Fronts, names: &[&str]) -> String {

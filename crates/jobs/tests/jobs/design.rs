@@ -423,7 +423,9 @@ fn contract_walls_that_lose_energy_are_answered_within_a_number_of_evaluations()
     assert!(told.len() > 3 && told.is_sorted_by(|before, after| after <= before), "{told:?}");
     let answer = desk.read_json("out/design.json");
     let evaluated = answer["designs_evaluated"].as_u64().expect("a number");
-    assert!((58..=58 + 4 * 150).contains(&evaluated), "{evaluated}");
-    assert!(largest(&answer, 2, "E1max") < 1.01 * told[told.len() - 1], "{answer}");
+    assert!((58..=58 + 4 * 60).contains(&evaluated), "{evaluated}");
+    // The last that is told is the one of the table, to the four digits of its words.
+    let last = told[told.len() - 1];
+    assert!((largest(&answer, 2, "E1max") / last - 1.0).abs() < 5e-4, "{last}: {answer}");
     assert!(largest(&answer, 2, "E1max") < 1.6 * largest(&answer, 1, "E1max"), "{answer}");
 }

@@ -63,15 +63,8 @@ impl Goal {
         matters: PerMeasure<f64>,
         proceed: Proceed<'_>,
     ) -> Result<Needs, Unusable> {
-        const ALL: PerMeasure<f64> = PerMeasure::all(f64::NEG_INFINITY);
-        let mut goal = Self { limits: Limits::default(), peaks: true, ..self.clone() };
-        // A stationary random motion has no largest values: those of the draw in the window are told.
-        goal.objective.for_each_term(&mut |term| {
-            if term.is_stationary() {
-                (term.response, term.quantity) = (Response::Window, term.quantity.of_run());
-            }
-        });
-        let own = goal.largest(scene, settings, (None, ALL), proceed)?;
+        let goal = self.of_every_measure();
+        let own = goal.own(scene, settings, proceed)?;
         let (mut whole, end) = (goal, self.window.to);
         whole.window.from = 0.0;
         whole.objective.for_each_term(&mut |term| {
@@ -90,6 +83,40 @@ impl Goal {
             }
         });
         Ok(Needs { whole: all, own })
+    }
+
+    /// What a scene needs by what the objective looks at alone: [`Needs::own`], to the same bits.
+    ///
+    /// # Errors
+    /// As [`Goal::evaluate_while`].
+    pub fn own_needs(
+        &self,
+        scene: &Scene,
+        settings: &Settings,
+        proceed: Proceed<'_>,
+    ) -> Result<PerMeasure<Need>, Unusable> {
+        self.of_every_measure().own(scene, settings, proceed)
+    }
+
+    /// The same goal without limits, so that it stops at none. A stationary random motion has no largest values: those of the draw in the
+    /// window are told.
+    fn of_every_measure(&self) -> Self {
+        let mut goal = Self { limits: Limits::default(), peaks: true, ..self.clone() };
+        goal.objective.for_each_term(&mut |term| {
+            if term.is_stationary() {
+                (term.response, term.quantity) = (Response::Window, term.quantity.of_run());
+            }
+        });
+        goal
+    }
+
+    fn own(
+        &self,
+        scene: &Scene,
+        settings: &Settings,
+        proceed: Proceed<'_>,
+    ) -> Result<PerMeasure<Need>, Unusable> {
+        self.largest(scene, settings, (None, PerMeasure::all(f64::NEG_INFINITY)), proceed)
     }
 
     /// The largest value of each measure from a time on, s; without one, of what the objective looks at. Peaks are searched where they may
