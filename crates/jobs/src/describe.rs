@@ -167,7 +167,10 @@ fn given(History { of, course }: &History) -> String {
             )
         }
         Course::Record(record) => {
-            let file = &record.source().file;
+            let file = match record.source().file.as_str() {
+                "" => "of the study itself",
+                file => file,
+            };
             let Some(samples) = record.samples() else {
                 return format!("under the record {file}, {of_what}");
             };

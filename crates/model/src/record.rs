@@ -32,7 +32,7 @@ pub struct RecordFile {
 
 /// A column of a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "give a column's name in the header, or its number from 1")]
 pub enum Column {
     /// By its number, from 1.
     Number(usize),
@@ -182,6 +182,10 @@ impl Samples {
     pub fn every(start: f64, step: f64, values: Vec<f64>) -> Result<Self, BadSamples> {
         if !(step.is_finite() && step > 0.0 && start + step > start) {
             return Err(BadSamples::Unsorted(2, start + step, start));
+        }
+        let end = start + (values.len() as f64 - 1.0) * step;
+        if !end.is_finite() {
+            return Err(BadSamples::NotFinite(values.len(), end));
         }
         Self::new(Times::Every(start, step), values)
     }

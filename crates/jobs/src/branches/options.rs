@@ -1,6 +1,7 @@
 //! What is asked for: the parameter, its range, how many runs are started.
 
 use crate::Error;
+use crate::describe::forced;
 use retune_dynamics::periodic::branches::{Plan, SPACINGS};
 use retune_model::Parameter;
 use retune_study::Study;
@@ -56,6 +57,12 @@ impl Options {
         let refuse = |option, problem| Error::Argument { option, problem };
         if study.scene.damper.is_none() {
             let problem = "the scene has no damper: its steady response is known in closed form".to_owned();
+            return Err(refuse("STUDY", problem));
+        }
+        if study.scene.forcing.is_transient() {
+            let forcing = forced(&study.scene.forcing);
+            let problem =
+                format!("the structure is {forcing}: only a forcing with an omega has periodic motions");
             return Err(refuse("STUDY", problem));
         }
         if self.margin && over != Parameter::Omega {

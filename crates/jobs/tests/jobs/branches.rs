@@ -9,7 +9,7 @@ use retune_model::Measure;
 use retune_testkit::desk::{Desk, committed};
 use retune_testkit::observers::{good, refused};
 use retune_testkit::verified::{End, a_changed_digit_is_found, holds, look};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// The paper's damper of Table 2, about its first period doubling.
 fn desk() -> Desk {
@@ -74,12 +74,22 @@ fn contract_what_is_asked_for_is_checked() {
         Options { over: Parameter::K2, from: text("-1"), to: text("9"), ..options() },
         "-1 N/m: give a value above 0",
     );
-    let mut bare = committed("ssvi.json");
-    bare["scene"]["damper"] = Value::Null;
-    bare["optimize"] = Value::Null;
-    let desk = Desk::with(&bare);
-    let error = refused(branches(&request(&desk, 1), &options(), &Silent));
-    assert!(error.to_string().contains("no damper"), "{error}");
+    let refuses = |change: fn(&mut Value), words: &str| {
+        let mut study = committed("ssvi.json");
+        study["optimize"] = Value::Null;
+        change(&mut study["scene"]);
+        let desk = Desk::with(&study);
+        let error = refused(branches(&request(&desk, 1), &options(), &Silent));
+        assert!(error.to_string().contains(words), "{error}");
+    };
+    refuses(|scene| scene["damper"] = Value::Null, "no damper");
+    let pulse = |scene: &mut Value| {
+        scene["forcing"] = json!({ "pulse": "rectangle", "of": "force", "peak": 1, "duration": 0.1 });
+    };
+    refuses(
+        pulse,
+        "under a rectangle of 1 N for 0.1 s, a force on the structure: only a forcing with an omega",
+    );
 }
 
 /// The damper with an isola and 40 mm more D, which removes it: with a little more force it is back. Below the force that the margin says no

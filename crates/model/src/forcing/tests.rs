@@ -68,6 +68,10 @@ fn contract_one_kind_of_forcing_and_what_it_needs() {
         (r#"{"record":{"times":[0,0],"values":[1,2]},"of":"force"}"#, "sample 2: the time 0 s does not"),
         (r#"{"record":{"step":1,"values":[1,2]},"of":"force","unit":"N"}"#, "`unit` has no meaning"),
         (r#"{"record":3,"of":"force"}"#, "a file, or samples"),
+        (
+            r#"{"record":"a.csv","of":"force","column":-1}"#,
+            "a column's name in the header, or its number from 1",
+        ),
         (r#"{"P":1,"omega":1,"of":"force"}"#, "`of` has no meaning beside `P`"),
         (
             r#"{"P":1,"omega":1,"pulse":"rectangle","of":"force","peak":1,"duration":1}"#,

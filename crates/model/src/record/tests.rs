@@ -75,6 +75,8 @@ fn contract_what_is_no_record_says_why() {
     assert!(refused(&[0.0, 1.0, 1.0], &[1.0, 1.0, 1.0]).starts_with("sample 3: the time 1 s does not"));
     assert!(Samples::every(0.0, 0.0, vec![1.0, 1.0]).is_err());
     assert!(Samples::every(0.0, 0.1, vec![]).is_err());
+    let endless = Samples::every(0.0, 1e308, vec![1.0; 3]).expect_err("no record").to_string();
+    assert!(endless.starts_with("sample 3: inf is not allowed"), "{endless}");
 }
 
 #[test]

@@ -60,23 +60,26 @@ fn exact_pulses_on_an_undamped_structure() {
 }
 
 /// A versed sine against its closed form, `x = p/2k (1 - cos ωt) - p/2 (cos Ωt - cos ωt) / (k - m Ω²)`: its samples leave an error of the
-/// fourth order of their distance.
+/// fourth order of their distance, and by default no more than `docs/theory.md` says, of pulses of a tenth to ten periods of the structure.
 #[test]
 fn order_the_motion_under_a_force_of_samples_is_of_fourth_order() {
     let numbers = Numbers { c1: 0.0, ..SSVI };
-    let (omega, duration, peak) = ((numbers.k1 / numbers.m1).sqrt(), 1.7, 900.0);
-    let turn = std::f64::consts::TAU / duration;
-    let (ahead, round) = ((omega * duration).cos(), (turn * duration).cos());
-    let own = 0.5 * peak / (numbers.k1 - numbers.m1 * turn * turn);
-    let exact = 0.5 * peak / numbers.k1 * (1.0 - ahead) - own * (round - ahead);
-    let size = peak / numbers.k1;
-    let error = |denser| {
+    let (omega, peak) = ((numbers.k1 / numbers.m1).sqrt(), 900.0);
+    let error = |duration: f64, share: f64, denser| {
+        let (turn, t) = (std::f64::consts::TAU / duration, share * duration);
+        let (ahead, round) = ((omega * t).cos(), (turn * t).cos());
+        let own = 0.5 * peak / (numbers.k1 - numbers.m1 * turn * turn);
+        let exact = 0.5 * peak / numbers.k1 * (1.0 - ahead) - own * (round - ahead);
         let form = Form::VersedSine(Finite::new(peak).expect("finite"));
         let scene = bare(numbers, made(Of::Force, form, duration, denser));
-        (run(&scene, duration).final_state[0] - exact).abs() / size
+        (run(&scene, t).final_state[0] - exact).abs() / (peak / numbers.k1)
     };
-    assert!(error(1.0) < 1e-10, "{:e}", error(1.0));
-    let [coarse, fine] = [error(0.02), error(0.04)];
+    for (duration, allowed) in [(0.1, 3e-13), (1.7, 8e-11), (10.0, 1.4e-9)] {
+        let errors = [1.0 / 3.0, 0.5, 1.0].map(|share| error(duration, share, 1.0));
+        let most = errors.into_iter().fold(0.0, f64::max);
+        assert!(most <= allowed && most > 0.5 * allowed, "{duration} s: {errors:?}");
+    }
+    let [coarse, fine] = [error(1.7, 1.0, 0.02), error(1.7, 1.0, 0.04)];
     assert!((13.0..19.0).contains(&(coarse / fine)), "{coarse:e} {fine:e}");
 }
 
