@@ -61,6 +61,7 @@ proof:
     {{retune}} prove results/ssvi --omega 5 --to 7.5 --most 225.82 --json > results/proof/ssvi.json
     {{retune}} prove results/ssvi --omega 7.5 --to 7.69 --most 225.82 --json > results/proof/ssvi-7.5.json
     {{retune}} prove results/ssvi --omega 7.69 --to 7.711 --most 225.82 --json > results/proof/ssvi-7.69.json
+    {{retune}} prove results/ssvi --omega 7.8255 --to 7.8534 --most 225.82 --json > results/proof/ssvi-7.8255.json
     {{retune}} prove results/ssvi --omega 7.854 --to 7.89 --most 225.82 --json > results/proof/ssvi-7.854.json
     {{retune}} prove results/ssvi --omega 7.8899 --to 7.891 --most 225.82 --json > results/proof/ssvi-7.8899.json
     for omega in 7.715 7.83 7.84 7.85; do {{retune}} prove results/ssvi --omega $omega --json > results/proof/single/ssvi-$omega.json; done
