@@ -24,7 +24,7 @@ from retune import _run, _scene
 def test_contract_the_wheel_is_for_every_later_python_and_small() -> None:
     (wheel,) = (ROOT / "target" / "wheels").glob("retune_dampers-*.whl")
     assert re.fullmatch(r"retune_dampers-[\d.]+-cp311-abi3-\w+\.whl", wheel.name), wheel.name
-    assert wheel.stat().st_size <= 6e6  # with the program
+    assert wheel.stat().st_size <= 6.5e6  # with the program
     assert Path(rt.__file__).with_name("py.typed").is_file()
     assert rt.__version__ == tomllib.loads((ROOT / "Cargo.toml").read_text())["workspace"]["package"]["version"]
 
