@@ -16,8 +16,20 @@ const HOPELESS: f64 = 100.0;
 /// the default limit of 20 million steps no run takes more than some seconds (`just lab hunt-durations`).
 const STEPS_OF_AN_EVALUATION: u64 = 4;
 
+/// Looks of an observer ([`Observer::looks`](crate::observe::Observer::looks)) that count as an evaluation: with the default limit they take
+/// some seconds (`just lab hunt-durations`).
+const LOOKS_OF_AN_EVALUATION: u64 = 32;
+
 /// Evaluations and looks that a run may make however few steps it may take.
 const LEAST_EVALUATIONS: u64 = 5_000_000;
+
+impl Work {
+    /// With what an observer has looked at, as evaluations.
+    #[inline(always)]
+    pub(crate) fn and(self, looks: u64) -> Self {
+        Self { evaluations: self.evaluations + looks / LOOKS_OF_AN_EVALUATION, ..self }
+    }
+}
 
 /// How a run chooses its steps.
 #[derive(Clone, Copy, Debug)]

@@ -35,14 +35,6 @@ pub struct Work {
     pub evaluations: u64,
 }
 
-impl Work {
-    /// With what an observer has looked at, of which so much counts as an evaluation that the default limit on these is some seconds.
-    #[inline(always)]
-    pub(crate) fn and(self, looks: u64) -> Self {
-        Self { evaluations: self.evaluations + looks / 32, ..self }
-    }
-}
-
 /// Largest values of the motion of the primary structure, each located as a maximum of its size, and when they are reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StructureMaxima {

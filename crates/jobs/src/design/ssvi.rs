@@ -80,26 +80,40 @@ fn starts(study: &Study, search: &Search, tmd: &Candidate) -> Vec<Start> {
 }
 
 /// Who tells the best so far, by its value as the table has it: runs of a search are looser, and those that tell known designs apart most of
-/// all.
+/// all. Descents run side by side, and are told in the order in which they begin: the same lines for any number of threads.
 struct Told<'a> {
     bar: Box<dyn Progress + 'a>,
     watch: &'a dyn Observer,
     study: &'a Study,
     /// Whether it is an answer to what was asked, which designs under other limits are not.
     asked: bool,
-    best: Mutex<f64>,
+    ended: Mutex<Ended>,
+}
+
+/// What descents have come to.
+struct Ended {
+    /// By their number; none while one is on its way.
+    all: Vec<Option<(f64, Vec<f64>)>>,
+    /// How many have been told.
+    told: usize,
+    best: f64,
 }
 
 impl Told<'_> {
-    /// One more has come to this value.
-    fn done(&self, value: f64, x: &[f64]) -> Result<(), Error> {
-        let mut best = self.best.lock().unwrap_or_else(PoisonError::into_inner);
+    /// A descent has come to this value.
+    fn done(&self, number: usize, value: f64, x: &[f64]) -> Result<(), Error> {
+        let mut ended = self.ended.lock().unwrap_or_else(PoisonError::into_inner);
+        let Ended { all, told, best } = &mut *ended;
+        all[number] = Some((value, x.to_vec()));
         let mut written = Ok(());
-        if value < *best {
-            *best = value;
-            self.bar.best(&sized(value, self.study.quantity().unit()));
-            if self.asked {
-                self.bar.aside(&mut || written = self.watch.so_far(&so_far(self.study, value, x)));
+        while let Some(Some((value, x))) = all.get(*told) {
+            *told += 1;
+            if *value < *best {
+                *best = *value;
+                self.bar.best(&sized(*value, self.study.quantity().unit()));
+                if self.asked && written.is_ok() {
+                    self.bar.aside(&mut || written = self.watch.so_far(&so_far(self.study, *value, x)));
+                }
             }
         }
         self.bar.inc(1);
@@ -221,8 +235,9 @@ pub(super) fn best(
     if known < INFEASIBLE {
         bar.best(&sized(known, study.quantity().unit()));
     }
-    let told = Told { bar, watch, study, asked, best: Mutex::new(known.min(INFEASIBLE)) };
-    let descent = |(_, x): &&Start| {
+    let ended = Ended { all: vec![None; worth.len()], told: 0, best: known.min(INFEASIBLE) };
+    let told = Told { bar, watch, study, asked, ended: Mutex::new(ended) };
+    let descent = |(number, (_, x)): (usize, &&Start)| {
         let stage = format!("{stage} descent");
         let Point { x, value } = if study.scene.forcing.is_transient() {
             simplex(kept(&objective, journal, &stage, || ()), &search, x)
@@ -230,9 +245,9 @@ pub(super) fn best(
             descend(&objective, &search, x, journal, &stage).end
         };
         let value = exactly(value, &x);
-        told.done(value, &x).map(|()| (value, x))
+        told.done(number, value, &x).map(|()| (value, x))
     };
-    let found: Result<Vec<(f64, Vec<f64>)>, Error> = worth.par_iter().map(descent).collect();
+    let found: Result<Vec<(f64, Vec<f64>)>, Error> = worth.par_iter().enumerate().map(descent).collect();
     told.bar.finish();
     journal.check()?;
     let known = ends.first().map(|(_, x)| x.clone());

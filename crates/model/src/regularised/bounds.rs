@@ -100,9 +100,7 @@ impl RegularisedContact {
         for _ in 0..8 {
             let [q, w, x1, v1] = most;
             let (stretch, contact) = (q * q + self.stretch.abs(), q * q * q * self.most(w));
-            let outside = excitation + self.primary[1] * v1 + self.primary[2] * x1;
-            let [a1, rate] = [0, 1]
-                .map(|i| outside + self.hertz[i] * contact + self.dashpot[i] * w + self.spring[i] * stretch);
+            let [a1, rate] = self.sizes_of_rates(excitation, &most);
             let change = [0.5 * w, q * rate, q * v1, q * a1].map(|slope| 0.5 * h * slope);
             let reach: [f64; 4] = std::array::from_fn(|i| ends[i] + change[i]);
             if (0..4).all(|i| reach[i] <= most[i]) {
@@ -126,8 +124,16 @@ impl RegularisedContact {
         None
     }
 
+    /// Bounds on a piece `h` (s/√m) long between two states, by either proof; `None` if it is too long for both.
     fn bounds_on(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Option<Bounds<'_>> {
         self.bounds_between(h, from, to).or_else(|| self.bounds_by_energy(h, from, to))
+    }
+
+    /// The sums of the sizes of all terms of `a1` and of `dw/dt`, m/s², of bounds on `[q, w, x1, v1]` and on what the force adds to `a1`.
+    fn sizes_of_rates(&self, excitation: f64, &[q, w, x1, v1]: &[f64; 4]) -> [f64; 2] {
+        let (stretch, contact) = (q * q + self.stretch.abs(), q * q * q * self.most(w));
+        let outside = excitation + self.primary[1] * v1 + self.primary[2] * x1;
+        [0, 1].map(|i| outside + self.hertz[i] * contact + self.dashpot[i] * w + self.spring[i] * stretch)
     }
 
     /// A bound on the force, N.
@@ -181,8 +187,8 @@ impl RegularisedContact {
         let (z0, spring, kappa) = (q0 * q0, self.spring[1], self.law[0] * self.hertz[1]);
         let lost = |q: f64, w: f64| (self.dashpot[1] + self.hertz[1] * self.law[1] * q.powi(3)) * w;
         let pushed = -(self.acceleration(from) + lost(q0, w0)); // U' - a0
-        let softest = |q: f64| spring + 1.5 * kappa * q;
-        let (here, halfway) = (softest(q0), softest(0.5 * q0));
+        let stiffness = |q: f64| spring + 1.5 * kappa * q; // U'' at z = q²
+        let (here, halfway) = (stiffness(q0), stiffness(0.5 * q0));
         let least = match pushed {
             _ if pushed <= 0.0 => here,
             _ if pushed <= 0.75 * z0 * halfway => halfway,
@@ -195,12 +201,9 @@ impl RegularisedContact {
         let ends: [f64; 4] = std::array::from_fn(|i| from[i].abs().max(to[i].abs()));
         let mut state = ends;
         for _ in 0..8 {
-            let [q, w, x1, v1] = state;
+            let [q, w, _, v1] = state;
             let seconds = h * q;
-            let push = self.hertz[0] * q.powi(3) * self.most(w)
-                + self.dashpot[0] * w
-                + self.spring[0] * (q * q + self.stretch.abs());
-            let a1 = self.primary[0] * force + self.primary[1] * v1 + self.primary[2] * x1 + push;
+            let [a1, _] = self.sizes_of_rates(self.primary[0] * force, &state);
             let change = seconds * (self.primary[1] * a1 + self.primary[2] * v1 + self.felt.abs() * turn);
             let energy = begin + 0.5 * seconds * change;
             let way = (seconds * energy).min((begin + energy) / spring.sqrt());
@@ -211,7 +214,7 @@ impl RegularisedContact {
                 ends[3] + 0.5 * seconds * a1,
             ];
             if (0..4).all(|i| reach[i] <= state[i]) {
-                let stiffest = softest(q.max(deepest.sqrt()));
+                let stiffest = stiffness(q.max(deepest.sqrt()));
                 let rate = stiffest.sqrt() * energy + change + lost(q, w);
                 return Some(Bounds { state, rate, force, stages: None });
             }

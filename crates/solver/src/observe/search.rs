@@ -75,7 +75,7 @@ pub fn in_theta([value, slope, curvature]: [f64; 3], [rate, rate_slope]: [f64; 2
 /// A place in a segment: `θ`, the moment, and `[value, slope, curvature]` there.
 pub type Place<const N: usize> = (f64, Knot<N>, [f64; 3]);
 
-/// Whether most of the room above the values at both ends is that of the remainder, of which a bound contains some three.
+/// Whether some half of the room above the lower of both ends is that of the remainder, of which a bound contains 64/20 (see `highest`).
 fn says_little<const N: usize>(remainder: f64, highest: f64, a: &Place<N>, b: &Place<N>) -> bool {
     remainder >= 0.125 * (highest - a.2[0].min(b.2[0]))
 }
