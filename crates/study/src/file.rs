@@ -195,7 +195,11 @@ pub(super) fn explain(path: Option<&str>, error: &serde_json::Error) -> String {
         }
         Some((name, _)) if message.starts_with("missing field") => {
             let full = field.map_or_else(|| (*name).to_owned(), |parent| format!("{parent}.{name}"));
-            format!("{full}: missing, and it has no default")
+            // What the rule says behind the name, where it says more than serde does.
+            let rule = message
+                .split_once("`: ")
+                .map_or(", and it has no default".to_owned(), |(_, rule)| format!(": {rule}"));
+            format!("{full}: missing{rule}")
         }
         Some((name, _)) if message.starts_with("duplicate field") => {
             let full = field.map_or_else(|| (*name).to_owned(), |parent| format!("{parent}.{name}"));

@@ -248,7 +248,7 @@ fn costs(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
         let (more, name) = (own.goal / free.goal - 1.0, own.what.name());
         let instead = format!("({} instead of {})", said(own), said(free));
         if more >= 1.0 {
-            format!("makes that of the {name} {} times as large {instead}", rounded(1.0 + more, 3))
+            format!("makes {} of the {name} {} times as large {instead}", goal.name(), rounded(1.0 + more, 3))
         } else if more > 1e-6 {
             format!("costs the {name} {} {instead}", percent(more))
         } else {
@@ -265,7 +265,7 @@ fn costs(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
         }
         match (&compared.ssvi, &of.ssvi) {
             (Some(own), Some(free)) if own.feasible => words.push(cost(own, free)),
-            (Some(own), None) if own.feasible => words.push("holds no SSVI NES back".to_owned()),
+            (Some(own), None) if own.feasible => words.push("the SSVI NES stays below it".to_owned()),
             _ => {}
         }
         let name = limit(requirements, of.constraint);

@@ -210,14 +210,16 @@ pub(super) fn compare(
         tried = Some(found.tried);
         let mut all = striking(ssvi_study, &found);
         let rival = requirements.dampers == Dampers::Ssvi || !tmd.feasible;
-        (ssvi, judged) = match all.next().transpose()? {
+        let best = all.next().transpose()?;
+        let least = best.as_ref().map(|(_, candidate)| candidate.goal);
+        (ssvi, judged) = match best {
             Some(best) if best.1.feasible && (rival || tmd.goal > (1.0 + SAME) * best.1.goal) => {
                 let (candidate, certificate) = trusted(best, all)?;
                 (Some(candidate), Some(certificate))
             }
             best => (best.map(|(_, candidate)| candidate), None),
         };
-        ssvi::tell_compared(&found, ssvi.as_ref(), watch)?;
+        ssvi::tell_compared(&found, ssvi.as_ref().zip(least), watch)?;
     }
     let other_sign = ssvi.as_ref().and_then(with_other_sign);
     let much_better = |certificate: &Certificate| (1.0 + SAME) * worst_nearby(certificate) < tmd.goal;

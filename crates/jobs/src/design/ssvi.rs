@@ -139,16 +139,18 @@ fn words(study: &Study, value: f64, x: &[f64]) -> String {
     format!("{value}, {}", design.join(", "))
 }
 
-/// Tells the one that is compared, where it is not the best that was told: of those nearly as good the more certain, or the best that strikes.
+/// Tells the one that is compared, and why, where it is not the best that was told; beside it the least goal of those that strike.
 pub(super) fn tell_compared(
     found: &Ends,
-    compared: Option<&Candidate>,
+    compared: Option<(&Candidate, f64)>,
     watch: &dyn Observer,
 ) -> Result<(), Error> {
-    let is_told = |of: &&Candidate| found.ends.first().is_some_and(|(value, _)| *value == of.goal);
-    let Some(of) = compared.filter(|of| of.feasible && !is_told(of)) else { return Ok(()) };
+    let is_told = |of: &Candidate| found.ends.first().is_some_and(|(value, _)| *value == of.goal);
+    let Some((of, least)) = compared.filter(|(of, _)| of.feasible && !is_told(of)) else { return Ok(()) };
+    let why =
+        if of.goal == least { "the best that strikes its walls" } else { "nearly as good, and more certain" };
     let x = Parameter::PAPER.map(|parameter| of.damper().map_or(f64::NAN, |damper| parameter.get(&damper)));
-    watch.so_far(&format!("SSVI NES chosen: {}", words(&of.study, of.goal, &x)))
+    watch.so_far(&format!("SSVI NES compared ({why}): {}", words(&of.study, of.goal, &x)))
 }
 
 /// Whether contacts lose energy: exact derivatives then take minutes.

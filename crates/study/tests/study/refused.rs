@@ -101,7 +101,10 @@ fn contract_wrong_losses_are_named_with_what_is_allowed() {
         ".restitution: 0 is not allowed here: give a number above 0 and at most 1",
     );
     loss(json!({ "restitution": 0.7, "at": 0 }), ".at: 0 is not allowed here: give a finite number above 0");
-    loss(json!({ "at": 0.7 }), ".restitution: missing, and it has no default");
+    loss(
+        json!({ "at": 0.7 }),
+        ".restitution: missing: speed after over speed before a collision at the speed `at`",
+    );
     loss(
         json!({ "lambda": 1, "restitution": 0.7, "at": 1 }),
         ": give `lambda` (s/m) or `restitution`, not both",
@@ -136,16 +139,21 @@ fn contract_unknown_fields_are_named_with_a_suggestion() {
 
 #[test]
 fn contract_missing_fields_are_named() {
-    for (pointer, field, path) in [
-        ("/scene/primary", "k1", "scene.primary.k1"),
-        ("", "window", "window"),
-        ("/scene/damper/contact", "R", "scene.damper.contact.R"),
-        ("/optimize", "vary", "optimize.vary"),
+    let required = ", and it has no default";
+    let walls = ": a damper in a cavity has D, C and contact, one without walls has none of them";
+    let hertz = ": give all of R, q, E1, nu1 to E4, nu4 (Hertz's surfaces), or `rigid` alone";
+    for (pointer, field, path, rule) in [
+        ("/scene/primary", "k1", "scene.primary.k1", required),
+        ("", "window", "window", required),
+        ("/scene/damper", "C", "scene.damper.C", walls),
+        ("/scene/damper", "contact", "scene.damper.contact", walls),
+        ("/scene/damper/contact", "R", "scene.damper.contact.R", hertz),
+        ("/optimize", "vary", "optimize.vary", required),
     ] {
         let mut study = tiny();
         let parent = study.pointer_mut(pointer).and_then(Value::as_object_mut).expect(pointer);
         parent.remove(field).expect(field);
-        refused_text(&study.to_string(), &format!("{path}: missing, and it has no default"));
+        refused_text(&study.to_string(), &format!("{path}: missing{rule}"));
     }
 }
 
