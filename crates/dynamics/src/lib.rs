@@ -23,7 +23,7 @@ pub mod sweep;
 
 pub use lyapunov::Exponent;
 pub use parameter::Error;
-pub use poincare::{Orbit, continuation, independent_orbits, resumed};
+pub use poincare::{Orbit, continuation, resumed};
 pub use record::{Record, Stretch, follow};
 pub use regime::{Kind, Regime, classify};
 pub use retune_model::Parameter;

@@ -1,7 +1,6 @@
 //! The stroboscopic map, which samples the motion once per period of the force, and orbit diagrams.
 
 use crate::parameter::Error;
-use rayon::prelude::*;
 use retune_model::{Coupled, Parameter, Scene};
 use retune_solver::observe::{Observer, PrimaryEnergy, RunningMaximum, TouchDowns, Unobserved};
 use retune_solver::{Follower, Motion, Phase, Settings, SolverError};
@@ -114,7 +113,7 @@ pub(crate) fn orbit(
     Ok((Orbit { value, samples, e1_max, impacts }, motion))
 }
 
-/// Sweeps the parameter through `values` in their order by continuation: each motion starts where the previous one ended, at a
+/// Sweeps the parameter through `values` in their order by continuation: the first motion starts from rest, each other where the previous one ended, at a
 /// crest of the force, so that the sweep stays on one branch as long as it exists.
 ///
 /// # Errors
@@ -138,26 +137,4 @@ pub fn continuation(
         done();
     }
     Ok(orbits)
-}
-
-/// The orbit at each of `values`, each from rest, in parallel.
-///
-/// # Errors
-/// See [`Error`].
-pub fn independent_orbits(
-    scene: &Scene,
-    parameter: Parameter,
-    values: &[f64],
-    periods: Periods,
-    settings: &Settings,
-    done: impl Fn() + Sync,
-) -> Result<Vec<Orbit>, Error> {
-    let run = |&value: &f64| {
-        let system = coupled(&parameter.at(*scene, value)?)?;
-        let (found, _) = orbit(&system, value, at_rest(&system), periods, settings)?;
-        done();
-        Ok(found)
-    };
-    let orbits: Vec<Result<Orbit, Error>> = values.par_iter().map(run).collect();
-    orbits.into_iter().collect()
 }

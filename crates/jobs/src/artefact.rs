@@ -1,4 +1,4 @@
-//! The files that each kind of job makes. From this list follow the files that a job may replace, and how `verify` computes each
+//! The files that each kind of job makes. From these lists follow the files that a job may replace, and how `verify` computes each
 //! of them again.
 
 use crate::again::{Rows, Whole};
@@ -16,53 +16,51 @@ pub enum Content {
     Derived,
 }
 
-/// A file of results.
-#[derive(Clone, Copy, Debug)]
-pub struct Artefact {
-    /// Its name; `*` stands for any text.
-    pub name: &'static str,
-    /// Its contents.
-    pub content: Content,
-}
-
-/// A kind of job.
+/// A kind of job, with all files that it makes: each list in the order in which `verify` reports on them, `*` in a name for any text.
 #[derive(Debug)]
 pub struct Kind {
     /// The command that asks for it, by which manifests name it.
     pub command: &'static str,
     /// The file without which its results are not complete.
     pub answer: &'static str,
-    /// All files that it makes, in the order in which `verify` reports on them.
-    pub artefacts: &'static [Artefact],
+    /// Its complete input.
+    pub input: &'static str,
+    /// Its tables.
+    pub rows: &'static [(&'static str, Rows)],
+    /// What is made again as a whole.
+    pub whole: &'static [(&'static str, Whole)],
+    /// What is derived from the others.
+    pub derived: &'static [&'static str],
 }
 
-/// A file of these contents.
-pub const fn artefact(name: &'static str, content: Content) -> Artefact {
-    Artefact { name, content }
-}
-
-impl Artefact {
-    /// Whether a file of this name is one of these.
-    pub fn is(&self, name: &str) -> bool {
-        match self.name.split_once('*') {
-            None => name == self.name,
-            Some((head, tail)) => {
-                name.strip_prefix(head).is_some_and(|rest| rest.len() > tail.len() && rest.ends_with(tail))
-            }
+/// Whether a file has a name in which `*` stands for any text.
+pub fn is_named(name: &str, pattern: &str) -> bool {
+    match pattern.split_once('*') {
+        None => name == pattern,
+        Some((head, tail)) => {
+            name.strip_prefix(head).is_some_and(|rest| rest.len() > tail.len() && rest.ends_with(tail))
         }
     }
 }
 
 impl Kind {
+    /// The names of all its files, each with its contents.
+    pub fn files(&self) -> impl Iterator<Item = (&'static str, Content)> {
+        let input = [(self.input, Content::Input)].into_iter();
+        let rows = self.rows.iter().map(|(name, rows)| (*name, Content::Rows(*rows)));
+        let whole = self.whole.iter().map(|(name, whole)| (*name, Content::Whole(*whole)));
+        input.chain(rows).chain(whole).chain(self.derived.iter().map(|name| (*name, Content::Derived)))
+    }
+
     /// Its files in words: those that it makes of any study, some of them only where the study asks for it.
-    pub fn files(&self) -> String {
-        let names: Vec<&str> = self.artefacts.iter().map(|artefact| artefact.name).collect();
+    pub fn words(&self) -> String {
+        let names: Vec<&str> = self.files().map(|(name, _)| name).collect();
         format!("`retune {}` makes {}", self.command, names.join(" "))
     }
 
     /// Whether this job makes files of this name.
     pub fn makes(&self, name: &str) -> bool {
-        self.artefacts.iter().any(|artefact| artefact.is(name))
+        self.files().any(|(pattern, _)| is_named(name, pattern))
     }
 }
 
@@ -72,13 +70,10 @@ mod tests {
 
     #[test]
     fn contract_a_star_stands_for_any_text() {
-        let one = artefact("surf-*.svg", Content::Derived);
-        assert!(one.is("surf-k2-c2.svg"));
+        assert!(is_named("surf-k2-c2.svg", "surf-*.svg"));
         for name in ["surf-.svg", "surf.svg", "surf-k2.csv", "my-surf-k2.svg"] {
-            assert!(!one.is(name), "{name}");
+            assert!(!is_named(name, "surf-*.svg"), "{name}");
         }
-        assert!(
-            artefact("a.csv", Content::Input).is("a.csv") && !artefact("a.csv", Content::Input).is("a.csvx")
-        );
+        assert!(is_named("a.csv", "a.csv") && !is_named("a.csvx", "a.csv"));
     }
 }

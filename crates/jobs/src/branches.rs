@@ -13,7 +13,7 @@ pub use motions::{Margin, Motions};
 pub use options::Options;
 pub use tables::summary;
 
-use crate::artefact::{Content, Kind, artefact};
+use crate::artefact::Kind;
 use crate::job::{Done, Job, Made};
 use crate::{Error, Observer, Request, resolved};
 use options::plan_json;
@@ -26,19 +26,15 @@ use retune_study::read;
 pub static KIND: Kind = Kind {
     command: "branches",
     answer: "branches.json",
-    artefacts: &[
-        artefact(resolved::SEVERAL, Content::Input),
-        artefact(tables::BRANCHES, Content::Rows(tables::again)),
-        artefact(tables::BIFURCATIONS, Content::Rows(tables::again)),
-        artefact(tables::ATTRACTORS, Content::Rows(tables::again)),
-        artefact(tables::STATES, Content::Derived),
-        artefact(tables::STARTS, Content::Rows(tables::again)),
-        artefact("branches.json", Content::Derived),
-        artefact("branches.svg", Content::Derived),
-        artefact("basins.svg", Content::Derived),
-        artefact("README.md", Content::Derived),
-        artefact("report.html", Content::Derived),
+    input: resolved::SEVERAL,
+    rows: &[
+        (tables::BRANCHES, tables::again),
+        (tables::BIFURCATIONS, tables::again),
+        (tables::ATTRACTORS, tables::again),
+        (tables::STARTS, tables::again),
     ],
+    whole: &[],
+    derived: &[tables::STATES, "branches.json", "branches.svg", "basins.svg", "README.md", "report.html"],
 };
 
 /// Follows the branches of the scene of a study, or of the design that a search found, along a parameter.

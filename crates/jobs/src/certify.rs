@@ -12,7 +12,7 @@ pub(crate) use certificate::{Measured, periodic};
 pub(crate) use walls::Walls;
 
 use crate::again::{Made, json};
-use crate::artefact::{Content, Kind, artefact};
+use crate::artefact::Kind;
 use crate::job::{Job, open, where_results_are};
 use crate::resolved::{self, identity_of};
 use crate::{Error, Observer, Request};
@@ -30,7 +30,10 @@ pub const FILE: &str = "certificate.json";
 pub static KIND: Kind = Kind {
     command: "certify",
     answer: FILE,
-    artefacts: &[artefact(resolved::ONE, Content::Input), artefact(FILE, Content::Whole(of_study))],
+    input: resolved::ONE,
+    rows: &[],
+    whole: &[(FILE, of_study)],
+    derived: &[],
 };
 
 /// Certifies the design of a study, or the one that a search found: `request.study` is a study, an `optimum.json`, or the directory of

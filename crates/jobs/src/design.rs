@@ -11,7 +11,6 @@ mod motion;
 mod page;
 mod reading;
 mod requirements;
-mod simplex;
 mod ssvi;
 mod table;
 mod tmd;
@@ -26,7 +25,7 @@ pub use requirements::Requirements;
 use tmd::Formula;
 pub use typed::{Specification, Typed};
 
-use crate::artefact::{Content, Kind, artefact};
+use crate::artefact::Kind;
 use crate::job::{Done, Job, Made};
 use crate::{Error, Observer, Request, pages, resolved};
 use serde_json::json;
@@ -36,17 +35,18 @@ use std::path::{Path, PathBuf};
 pub static KIND: Kind = Kind {
     command: "design",
     answer: "design.json",
-    artefacts: &[
-        artefact(resolved::SEVERAL, Content::Input),
-        artefact("design.json", Content::Derived),
-        artefact("comparison.csv", Content::Rows(table::again)),
-        artefact("answer.txt", Content::Derived),
-        artefact("studies-*.json", Content::Derived),
-        artefact("band.svg", Content::Derived),
-        artefact("motion.svg", Content::Derived),
-        artefact("damper.svg", Content::Derived),
-        artefact("README.md", Content::Derived),
-        artefact("report.html", Content::Derived),
+    input: resolved::SEVERAL,
+    rows: &[("comparison.csv", table::again)],
+    whole: &[],
+    derived: &[
+        "design.json",
+        "answer.txt",
+        "studies-*.json",
+        "band.svg",
+        "motion.svg",
+        "damper.svg",
+        "README.md",
+        "report.html",
     ],
 };
 

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use retune_optim::{DesignObjective, Evaluation, Parameter, Unusable};
 use retune_study::Study;
 use serde_json::json;
-use std::io::{BufRead, ErrorKind, Write};
+use std::io::{BufRead, ErrorKind, Read, Write};
 use std::sync::mpsc::{Receiver, sync_channel};
 use thiserror::Error;
 
@@ -212,27 +212,17 @@ fn lines(mut input: impl BufRead + Send + 'static, ahead: usize) -> Receiver<std
 /// The next line; `None` at the end.
 fn next(input: &mut impl BufRead) -> std::io::Result<Option<Line>> {
     let mut line = Vec::new();
-    let (mut any, mut long) = (false, false);
-    loop {
-        let there = input.fill_buf()?;
-        if there.is_empty() {
-            break;
-        }
-        any = true;
-        let end = there.iter().position(|byte| *byte == b'\n');
-        let part = &there[..end.unwrap_or(there.len())];
-        long |= line.len() + part.len() > MOST_BYTES;
-        if !long {
-            line.extend_from_slice(part);
-        }
-        let used = part.len() + usize::from(end.is_some());
-        input.consume(used);
-        if end.is_some() {
-            break;
-        }
+    if input.by_ref().take(MOST_BYTES as u64 + 1).read_until(b'\n', &mut line)? == 0 {
+        return Ok(None);
     }
-    let text = || Line::Text(String::from_utf8_lossy(&line).into_owned());
-    Ok(any.then(|| if long { Line::Long } else { text() }))
+    let is_whole = line.pop_if(|byte| *byte == b'\n').is_some();
+    if line.len() <= MOST_BYTES {
+        return Ok(Some(Line::Text(String::from_utf8_lossy(&line).into_owned())));
+    }
+    if !is_whole {
+        input.skip_until(b'\n')?;
+    }
+    Ok(Some(Line::Long))
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ mod search;
 
 pub(crate) use candidate::SAME;
 
-use crate::artefact::{Content, Kind, artefact};
+use crate::artefact::Kind;
 use crate::job::{Done, Job, Made};
 use crate::resolved;
 use crate::searches::Searches;
@@ -22,20 +22,15 @@ use serde_json::json;
 pub static KIND: Kind = Kind {
     command: "fronts",
     answer: "front.csv",
-    artefacts: &[
-        artefact(resolved::SEVERAL, Content::Input),
-        artefact("k2.csv", Content::Rows(crate::designs::again)),
-        artefact("stroke.csv", Content::Rows(crate::designs::again)),
-        artefact("contact_force.csv", Content::Rows(crate::designs::again)),
-        artefact("front.csv", Content::Rows(crate::designs::again)),
-        artefact("certificate-*.json", Content::Whole(designs::again)),
-        artefact("k2.svg", Content::Derived),
-        artefact("stroke.svg", Content::Derived),
-        artefact("contact_force.svg", Content::Derived),
-        artefact("front.svg", Content::Derived),
-        artefact("README.md", Content::Derived),
-        artefact("report.html", Content::Derived),
+    input: resolved::SEVERAL,
+    rows: &[
+        ("k2.csv", crate::designs::again),
+        ("stroke.csv", crate::designs::again),
+        ("contact_force.csv", crate::designs::again),
+        ("front.csv", crate::designs::again),
     ],
+    whole: &[("certificate-*.json", designs::again)],
+    derived: &["k2.svg", "stroke.svg", "contact_force.svg", "front.svg", "README.md", "report.html"],
 };
 
 /// Tunes each damper under each bound, and shows what it is good for.

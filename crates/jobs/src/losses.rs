@@ -7,7 +7,7 @@ mod points;
 
 pub use points::{Losses, Point, Tuning};
 
-use crate::artefact::{Content, Kind, artefact};
+use crate::artefact::Kind;
 use crate::job::{Done, Job, Made};
 use crate::paper::TABLE_2;
 use crate::resolved;
@@ -24,15 +24,10 @@ use serde_json::json;
 pub static KIND: Kind = Kind {
     command: "losses",
     answer: FILE,
-    artefacts: &[
-        artefact(resolved::SEVERAL, Content::Input),
-        artefact(FILE, Content::Rows(points::again)),
-        artefact("losses.svg", Content::Derived),
-        artefact("dashpot.svg", Content::Derived),
-        artefact("powers.svg", Content::Derived),
-        artefact("README.md", Content::Derived),
-        artefact("report.html", Content::Derived),
-    ],
+    input: resolved::SEVERAL,
+    rows: &[(FILE, points::again)],
+    whole: &[],
+    derived: &["losses.svg", "dashpot.svg", "powers.svg", "README.md", "report.html"],
 };
 
 /// Tunes dampers for the restitutions of the objective of a study, and compares them.

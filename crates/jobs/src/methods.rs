@@ -3,7 +3,7 @@
 
 use crate::Error;
 use crate::again::{Row, Source};
-use crate::artefact::{Content, Kind, artefact};
+use crate::artefact::Kind;
 use crate::resolved::{Resolved, SEVERAL};
 use retune_model::Scene;
 use retune_solver::{Contacts, Method, Response, Settings, Window, simulate, touch_downs};
@@ -15,25 +15,20 @@ use std::path::Path;
 pub static ACCURACY: Kind = Kind {
     command: "accuracy",
     answer: "runs.csv",
-    artefacts: &[
-        artefact(SEVERAL, Content::Input),
-        artefact("runs.csv", Content::Rows(again)),
-        artefact("*.svg", Content::Derived),
-        artefact("README.md", Content::Derived),
-    ],
+    input: SEVERAL,
+    rows: &[("runs.csv", again)],
+    whole: &[],
+    derived: &["*.svg", "README.md"],
 };
 
 /// The files of the atlas of failures.
 pub static STABILITY: Kind = Kind {
     command: "stability",
     answer: "atlas.csv",
-    artefacts: &[
-        artefact(SEVERAL, Content::Input),
-        artefact("atlas.csv", Content::Rows(again)),
-        artefact("*.csv", Content::Derived),
-        artefact("*.svg", Content::Derived),
-        artefact("README.md", Content::Derived),
-    ],
+    input: SEVERAL,
+    rows: &[("atlas.csv", again)],
+    whole: &[],
+    derived: &["*.csv", "*.svg", "README.md"],
 };
 
 /// Settings of a method at a tolerance, or at a step (s).

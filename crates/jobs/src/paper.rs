@@ -21,7 +21,7 @@ pub use plan::PaperPlan;
 pub(crate) use table1::TABLE_2;
 
 use crate::again::{Made as Again, broken, design, json, text};
-use crate::artefact::{Content, Kind, artefact};
+use crate::artefact::Kind;
 use crate::job::{Job, Made};
 use crate::observer::Quiet;
 use crate::resolved::{Resolved, SEVERAL};
@@ -45,17 +45,14 @@ const SEARCHES: &str = "table2";
 pub static KIND: Kind = Kind {
     command: "reproduce",
     answer: "index.html",
-    artefacts: &[
-        artefact(SEVERAL, Content::Input),
-        artefact("study.json", Content::Derived),
-        artefact("table1-statements.json", Content::Whole(again)),
-        artefact("table2-statements.json", Content::Whole(again)),
-        artefact("figure*-statements.json", Content::Whole(again)),
-        artefact("table1-*", Content::Derived),
-        artefact("table2-*", Content::Derived),
-        artefact("figure*", Content::Derived),
-        artefact("index.html", Content::Derived),
+    input: SEVERAL,
+    rows: &[],
+    whole: &[
+        ("table1-statements.json", again),
+        ("table2-statements.json", again),
+        ("figure*-statements.json", again),
     ],
+    derived: &["study.json", "table1-*", "table2-*", "figure*", "index.html"],
 };
 
 /// Makes every item of the paper and the page that holds them, or only the item `only` (`table1`, `figure4`).
@@ -206,7 +203,7 @@ impl Described {
     /// The same as JSON.
     pub fn json(&self, path: &Path) -> Value {
         let lines: Vec<&str> = self.words.lines().map(str::trim).collect();
-        let files = |job: &&Kind| job.artefacts.iter().map(|artefact| artefact.name).collect::<Vec<_>>();
+        let files = |job: &&Kind| job.files().map(|(name, _)| name).collect::<Vec<_>>();
         let jobs: Map<String, Value> =
             self.jobs.iter().map(|job| (job.command.to_owned(), files(job).into())).collect();
         serde_json::json!({ "file": path.display().to_string(), "kind": self.kind.name(), "words": lines, "files": jobs })

@@ -63,4 +63,12 @@ impl Resolved {
             |damper: &Damper| Ok((damper.damper.clone(), from_text(&damper.study.to_string(), SEVERAL)?));
         self.dampers.iter().map(study).collect()
     }
+
+    /// The plan and the study in a directory of results that are of one study.
+    pub fn one(place: &Path) -> Result<(Value, Study), Error> {
+        let resolved = Self::read(place)?;
+        let first = resolved.studies()?.into_iter().next();
+        let (_, study) = first.ok_or_else(|| again::broken(place, SEVERAL, "it names no study"))?;
+        Ok((resolved.plan, study))
+    }
 }

@@ -23,7 +23,7 @@ pub use retained::Retained;
 pub use trade::Point;
 pub use tuned::{Tuned, Tuning};
 
-use crate::artefact::{Content, Kind, artefact};
+use crate::artefact::Kind;
 use crate::designs::{Designs, Row};
 use crate::job::{Done, Job, Made};
 use crate::needs::Largest;
@@ -39,20 +39,18 @@ use tuned::{CURVES, DESIGNS, FORCES, RANGES};
 pub static KIND: Kind = Kind {
     command: "retention",
     answer: DESIGNS,
-    artefacts: &[
-        artefact(resolved::SEVERAL, Content::Input),
-        artefact(DESIGNS, Content::Rows(again::again)),
-        artefact(CURVES, Content::Rows(again::again)),
-        artefact(RANGES, Content::Rows(again::again)),
-        artefact(FORCES, Content::Rows(again::again)),
-        artefact("retune.txt", Content::Derived),
-        artefact("retention.svg", Content::Derived),
-        artefact("still.svg", Content::Derived),
-        artefact("force.svg", Content::Derived),
-        artefact("path.svg", Content::Derived),
-        artefact("range.svg", Content::Derived),
-        artefact("README.md", Content::Derived),
-        artefact("report.html", Content::Derived),
+    input: resolved::SEVERAL,
+    rows: &[(DESIGNS, again::again), (CURVES, again::again), (RANGES, again::again), (FORCES, again::again)],
+    whole: &[],
+    derived: &[
+        "retune.txt",
+        "retention.svg",
+        "still.svg",
+        "force.svg",
+        "path.svg",
+        "range.svg",
+        "README.md",
+        "report.html",
     ],
 };
 

@@ -1,31 +1,27 @@
 //! The results of a run: one type, from which JSON and text are made.
 
 use crate::describe::{LEFT_OUT, forced};
-use retune_model::{Damper, Design, Measure, Parameter, PerMeasure, Positive, Scene, Source, energy_ratios};
+use retune_model::{Damper, Design, Measure, Parameter, Positive, Scene, Source, energy_ratios};
 use retune_optim::Objective;
-use retune_solver::{Method, Response, SceneKind, StructureMaxima, leaves_out_a_fast_part};
+use retune_solver::{Extreme, Method, Response, SceneKind, StructureMaxima, leaves_out_a_fast_part};
 use retune_study::{Solver, Span, Study, counted, hertz_and_rpm, is_of_paper, over, rounded};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// The observations in the window of a run. SI units; a ratio 0/0 is null.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
     #[serde(flatten)]
     made_by: MadeBy,
-    #[serde(rename = "E1max")]
-    e1_max: f64,
-    #[serde(rename = "t_E1max")]
-    t_e1_max: f64,
-    #[serde(rename = "E2max")]
-    e2_max: f64,
-    #[serde(rename = "t_E2max")]
-    t_e2_max: f64,
+    /// Largest energies, J.
+    #[serde(flatten, serialize_with = "by_name")]
+    energies: [(&'static str, Extreme); 2],
     #[serde(rename = "R1")]
     r1: f64,
     #[serde(rename = "R2")]
     r2: f64,
-    #[serde(flatten)]
-    structure: Structure,
+    /// Largest sizes of the structure's displacement, velocity and acceleration, and of its force on the ground.
+    #[serde(flatten, serialize_with = "by_name")]
+    structure: [(&'static str, Extreme); 4],
     impacts: Walls<u64>,
     /// Largest |x2 - x1| and |x2 - x1 - D|, m.
     relative_displacement_max: f64,
@@ -34,7 +30,7 @@ pub struct Summary {
     pressure_max: Walls<f64>,
     final_state: FinalState,
     #[serde(skip)]
-    largest: PerMeasure<f64>,
+    response: Response,
     /// The smallest model that was exact.
     scene: SceneKind,
     steps: u64,
@@ -43,41 +39,11 @@ pub struct Summary {
     parameters: Scene,
 }
 
-/// Largest sizes of the structure's displacement, velocity and acceleration and of its force on the ground, and when, s.
-#[derive(Clone, Copy, Debug, Serialize)]
-struct Structure {
-    /// |x1|, m.
-    x1max: f64,
-    #[serde(rename = "t_x1max")]
-    t_x1: f64,
-    /// |v1|, m/s.
-    v1max: f64,
-    #[serde(rename = "t_v1max")]
-    t_v1: f64,
-    /// |a1|, m/s².
-    a1max: f64,
-    #[serde(rename = "t_a1max")]
-    t_a1: f64,
-    /// |k1 x1 + c1 v1|, N.
-    ground_force_max: f64,
-    #[serde(rename = "t_ground_force_max")]
-    t_ground_force: f64,
-}
-
-impl Structure {
-    fn new(largest: &StructureMaxima) -> Self {
-        let StructureMaxima { displacement, velocity, acceleration, ground_force } = largest;
-        Self {
-            x1max: displacement.value,
-            t_x1: displacement.time,
-            v1max: velocity.value,
-            t_v1: velocity.time,
-            a1max: acceleration.value,
-            t_a1: acceleration.time,
-            ground_force_max: ground_force.value,
-            t_ground_force: ground_force.time,
-        }
-    }
+/// Each value by its name, and when it is reached, s.
+fn by_name<S: Serializer>(all: &[(&'static str, Extreme)], serializer: S) -> Result<S::Ok, S::Error> {
+    let both =
+        |(name, at): &(&str, Extreme)| [((*name).to_owned(), at.value), (format!("t_{name}"), at.time)];
+    serializer.collect_map(all.iter().flat_map(both))
 }
 
 /// The origin of a result.
@@ -157,25 +123,27 @@ impl Summary {
     /// Collects the observations of a run of `scene` with the window and solver of `study`.
     pub fn new(study: &Study, scene: Scene, response: &Response) -> Self {
         let Response { e1_max, e2_max, impacts, final_state, scene: kind, work, .. } = *response;
-        let Response { relative_displacement_max, spring_deflection_max, .. } = *response;
+        let StructureMaxima { displacement, velocity, acceleration, ground_force } = response.structure;
         let [r1, r2] = energy_ratios(e1_max.value, e2_max.value);
         let [x1, v1, x2, v2] = final_state;
         Self {
             made_by: MadeBy::run(study, &scene),
-            e1_max: e1_max.value,
-            t_e1_max: e1_max.time,
-            e2_max: e2_max.value,
-            t_e2_max: e2_max.time,
+            energies: [("E1max", e1_max), ("E2max", e2_max)],
             r1,
             r2,
-            structure: Structure::new(&response.structure),
+            structure: [
+                ("x1max", displacement),
+                ("v1max", velocity),
+                ("a1max", acceleration),
+                ("ground_force_max", ground_force),
+            ],
             impacts: Walls::of(impacts),
-            relative_displacement_max,
-            spring_deflection_max,
+            relative_displacement_max: response.relative_displacement_max,
+            spring_deflection_max: response.spring_deflection_max,
             force_max: Walls::of(response.force_max),
             pressure_max: Walls::of(response.pressure_max),
             final_state: FinalState { x1, v1, x2, v2 },
-            largest: PerMeasure(Measure::ALL.map(|measure| response.largest(measure))),
+            response: *response,
             scene: kind,
             steps: work.steps,
             rejected: work.rejected,
@@ -197,13 +165,14 @@ impl Summary {
     /// The transmissibility of the motion in the window, see [`retune_model::Forcing::transmissibility`]. None without a force.
     pub fn transmissibility(&self) -> Option<f64> {
         let forcing = self.parameters.forcing;
-        let share = forcing.transmissibility(self.structure.x1max, self.structure.ground_force_max);
+        let StructureMaxima { displacement, ground_force, .. } = self.response.structure;
+        let share = forcing.transmissibility(displacement.value, ground_force.value);
         share.is_finite().then_some(share)
     }
 
     /// The largest value of a quantity in the window, in its SI unit.
     pub fn largest(&self, measure: Measure) -> f64 {
-        self.largest.get(measure)
+        self.response.largest(measure)
     }
 
     /// Impacts in the window, on the structure and on the obstacle.
@@ -236,8 +205,9 @@ impl std::fmt::Display for Summary {
         } else {
             writeln!(f, "frequency   {} rad/s = {hertz} Hz = {rpm} rpm", rounded(omega, 5))?;
         }
-        writeln!(f, "E1max       {:<12} J at t = {:.4} s", digits(self.e1_max), self.t_e1_max)?;
-        writeln!(f, "E2max       {:<12} J at t = {:.4} s", digits(self.e2_max), self.t_e2_max)?;
+        for (name, Extreme { value, time }) in self.energies {
+            writeln!(f, "{name:<12}{:<12} J at t = {time:.4} s", digits(value))?;
+        }
         if self.r1.is_nan() {
             writeln!(f, "R1, R2      none: nothing has energy in the window")?;
         } else {
@@ -259,15 +229,11 @@ impl std::fmt::Display for Summary {
             .map(|value| if is_small(value) { digits(value) } else { format!("{value:.6}") });
         writeln!(f, "stroke      {stroke} m, the largest spring deflection |x2 - x1 - D|")?;
         writeln!(f, "rel. displ. {relative} m, the largest relative displacement |x2 - x1|")?;
-        let Structure { x1max, t_x1, v1max, t_v1, a1max, t_a1, ground_force_max, t_ground_force } =
-            self.structure;
-        writeln!(f, "x1max       {:<12} m at t = {t_x1:.4} s", digits(x1max))?;
-        writeln!(f, "v1max       {:<12} m/s at t = {t_v1:.4} s", digits(v1max))?;
-        writeln!(f, "a1max       {:<12} m/s² at t = {t_a1:.4} s", digits(a1max))?;
-        writeln!(
-            f,
-            "ground      {ground_force_max:<12.3} N at t = {t_ground_force:.4} s, the largest force on the ground"
-        )?;
+        for ((name, Extreme { value, time }), unit) in self.structure.iter().zip(["m", "m/s", "m/s²"]) {
+            writeln!(f, "{name:<12}{:<12} {unit} at t = {time:.4} s", digits(*value))?;
+        }
+        let Extreme { value, time } = self.response.structure.ground_force;
+        writeln!(f, "ground      {value:<12.3} N at t = {time:.4} s, the largest force on the ground")?;
         if let Some(share) = self.transmissibility() {
             let by = match self.parameters.forcing.source {
                 Source::Imbalance(_) => "that force / (imbalance omega²)",
@@ -349,11 +315,5 @@ impl TunedDamper {
             })
             .collect();
         said.join(", ") + if self.design.get(Parameter::D).is_nan() { ", no walls" } else { "" }
-    }
-
-    /// m2, k2, c2, D and C, in SI units; NaN for the gaps of a damper without walls.
-    pub fn values(&self) -> [f64; 5] {
-        let [k2, c2, d, c] = self.design.values();
-        [self.mass.get(), k2, c2, d, c]
     }
 }

@@ -33,7 +33,7 @@ pub use plan::{Options, Plan, Quantity};
 pub use points::Sweep;
 
 use crate::again::{Row, Source, broken};
-use crate::artefact::{Content, Kind, artefact};
+use crate::artefact::Kind;
 use crate::job::{Job, Made};
 use crate::parts::{Shard, Shared};
 use crate::resolved::{self, Resolved};
@@ -55,13 +55,10 @@ const JSON: &str = "sweep.json";
 pub static KIND: Kind = Kind {
     command: "sweep",
     answer: JSON,
-    artefacts: &[
-        artefact(resolved::SEVERAL, Content::Input),
-        artefact(FILE, Content::Rows(again)),
-        artefact(JSON, Content::Derived),
-        artefact("sweep.txt", Content::Derived),
-        artefact("sweep.svg", Content::Derived),
-    ],
+    input: resolved::SEVERAL,
+    rows: &[(FILE, again)],
+    whole: &[],
+    derived: &[JSON, "sweep.txt", "sweep.svg"],
 };
 
 // A journal must hold every sweep; no point has more than 16 numbers.
@@ -156,14 +153,9 @@ fn json(sweep: &Sweep, table: &Table) -> Value {
 
 /// A row of the table, computed again: every number of it.
 fn again(place: &Path, _name: &str) -> Result<Source, Error> {
-    let resolved = Resolved::read(place)?;
-    let plan = serde_json::from_value(resolved.plan.clone())
-        .map_err(|error| broken(place, resolved::SEVERAL, error.to_string()))?;
-    let (_, study) = resolved
-        .studies()?
-        .into_iter()
-        .next()
-        .ok_or_else(|| broken(place, resolved::SEVERAL, "it names no study"))?;
+    let (plan, study) = Resolved::one(place)?;
+    let plan =
+        serde_json::from_value(plan).map_err(|error| broken(place, resolved::SEVERAL, error.to_string()))?;
     let sweep = Sweep::new(plan, study)?;
     Ok(Source::new(move |row: Row| {
         let columns = sweep.columns();

@@ -1,6 +1,6 @@
 //! `table2`: the same search for several dampers, from the paper's own designs.
 
-use crate::artefact::{Content, Kind, artefact};
+use crate::artefact::Kind;
 use crate::certify::judge;
 use crate::designs::{self, Designs, Row};
 use crate::job::{Done, Job, Made};
@@ -16,11 +16,10 @@ use serde_json::json;
 pub static KIND: Kind = Kind {
     command: "table2",
     answer: "table2.csv",
-    artefacts: &[
-        artefact(resolved::SEVERAL, Content::Input),
-        artefact("table2.csv", Content::Rows(designs::again)),
-        artefact("table2.txt", Content::Derived),
-    ],
+    input: resolved::SEVERAL,
+    rows: &[("table2.csv", designs::again)],
+    whole: &[],
+    derived: &["table2.txt"],
 };
 
 /// Re-optimises each row of Table 2 from the paper's own design, under the objective and the bounds of its study. The table has the paper's

@@ -21,7 +21,7 @@ pub(crate) use log::OPTIMUM;
 pub use optimum::Optimum;
 pub(crate) use optimum::{table2_header, table2_row};
 
-use crate::artefact::{Content, Kind, artefact};
+use crate::artefact::Kind;
 use crate::job::{Done, Job, Made};
 use crate::summary::Summary;
 use crate::{Error, Observer, Request, certify, resolved};
@@ -37,21 +37,16 @@ use std::path::Path;
 pub static KIND: Kind = Kind {
     command: "optimize",
     answer: OPTIMUM,
-    artefacts: &[
-        artefact(resolved::ONE, Content::Input),
-        artefact(log::GRID, Content::Rows(again::grid)),
-        artefact(log::LOG, Content::Rows(again::search)),
-        artefact(log::STARTS, Content::Rows(again::search)),
-        artefact(log::BASINS, Content::Rows(again::search)),
-        artefact(log::BAND, Content::Rows(again::band)),
-        artefact(OPTIMUM, Content::Whole(again::optimum)),
-        artefact(certify::FILE, Content::Whole(again::certificate)),
-        artefact(report::FILE, Content::Derived),
-        artefact("fminsearch.txt", Content::Derived),
-        artefact("surf-*.svg", Content::Derived),
-        artefact("convergence.svg", Content::Derived),
-        artefact("band.svg", Content::Derived),
+    input: resolved::ONE,
+    rows: &[
+        (log::GRID, again::grid),
+        (log::LOG, again::search),
+        (log::STARTS, again::search),
+        (log::BASINS, again::search),
+        (log::BAND, again::band),
     ],
+    whole: &[(OPTIMUM, again::optimum), (certify::FILE, again::certificate)],
+    derived: &[report::FILE, "fminsearch.txt", "surf-*.svg", "convergence.svg", "band.svg"],
 };
 
 /// Tunes the damper of a study file.

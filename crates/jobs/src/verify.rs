@@ -5,7 +5,7 @@
 mod report;
 
 use crate::again::{Made, text};
-use crate::artefact::{Content, Kind};
+use crate::artefact::{Content, Kind, is_named};
 use crate::parts::PARTS;
 use crate::{
     Error, Observer, branches, certify, design, fronts, losses, methods, paper, resolved, retention, sweep,
@@ -102,10 +102,10 @@ fn known<'a>(place: &Path, there: &'a [String]) -> Vec<(&'a str, Content)> {
     let mut known: Vec<(&str, Content)> = Vec::new();
     let command = Manifest::read(place).ok().flatten().map(|manifest| manifest.made_by.command);
     let compared = COMPARISONS.iter().filter(|kind| command.as_deref() == Some(kind.command));
-    for artefact in compared.chain(&KINDS).flat_map(|kind| kind.artefacts) {
-        for name in there.iter().filter(|name| artefact.is(name)) {
+    for (pattern, content) in compared.chain(&KINDS).flat_map(|kind| kind.files()) {
+        for name in there.iter().filter(|name| is_named(name, pattern)) {
             if known.iter().all(|(other, _)| other != name) {
-                known.push((name, artefact.content));
+                known.push((name, content));
             }
         }
     }

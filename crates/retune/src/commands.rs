@@ -89,7 +89,7 @@ pub fn run(command: Command) -> Result<(), Error> {
 
 fn design(arguments: &cli::Design) -> Result<(), Error> {
     let cli::Design { file, running, .. } = arguments;
-    let given = arguments.specification();
+    let given = arguments.specification()?;
     let specification = match file {
         Some(file) => Specification::read(file)?.with(given),
         None => given,
@@ -204,6 +204,6 @@ fn check(path: &Path, common: cli::Common) -> Result<(), Error> {
     let screen = common.screen(false);
     screen.answered_with(&described.json(path))?;
     screen.result(&described.words)?;
-    described.jobs.iter().try_for_each(|job| screen.result(&job.files()))?;
+    described.jobs.iter().try_for_each(|job| screen.result(&job.words()))?;
     screen.result(&format!("{}: good", path.display()))
 }

@@ -48,12 +48,6 @@ impl Pending {
         self.file.write_all(text.as_bytes()).map_err(|source| self.refused(source))
     }
 
-    /// Appends `line` and hands it to the system at once, so that whoever follows the file sees it.
-    pub fn push_line(&mut self, line: &str) -> Result<(), Error> {
-        let written = writeln!(self.file, "{line}").and_then(|()| self.file.flush());
-        written.map_err(|source| self.refused(source))
-    }
-
     /// Gives the file its name.
     pub fn finish(mut self) -> Result<(), Error> {
         let named = self.file.flush().and_then(|()| std::fs::rename(&self.temporary, &self.path));

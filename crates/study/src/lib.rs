@@ -56,6 +56,5 @@ pub use table2::{
 };
 pub use units::typed;
 pub use words::{
-    are, counted, design_cells, design_words, fields, frequency, hertz_and_rpm, joined, over, rounded, short,
-    visible,
+    are, counted, design_cells, design_words, frequency, hertz_and_rpm, joined, over, rounded, short, visible,
 };

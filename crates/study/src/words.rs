@@ -129,12 +129,6 @@ pub fn hertz_and_rpm(omega: f64) -> [f64; 2] {
     [hertz, 60.0 * hertz]
 }
 
-/// Numbers as fields of a table, to the last bit; empty where there is none.
-pub fn fields(values: &[f64]) -> String {
-    let field = |value: &f64| if value.is_nan() { String::new() } else { value.to_string() };
-    values.iter().map(field).collect::<Vec<_>>().join(",")
-}
-
 /// The items with `separator` between them.
 pub fn joined<T: Display>(items: &[T], separator: &str) -> String {
     items.iter().map(T::to_string).collect::<Vec<_>>().join(separator)

@@ -5,7 +5,7 @@ use crate::common::{SSVI, TMD, scene};
 use retune_dynamics::parameter::evenly;
 use retune_dynamics::poincare::Periods;
 use retune_dynamics::sweep::zones;
-use retune_dynamics::{Error, Parameter, Zone, continuation, independent, independent_orbits};
+use retune_dynamics::{Error, Parameter, Zone, continuation, independent};
 use retune_model::{Bare, Coupled};
 use retune_solver::{Settings, Window};
 
@@ -54,13 +54,7 @@ fn contract_results_do_not_depend_on_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         pool.install(|| {
             let window = Window { from: 20.0, to: 40.0 };
-            let points = independent(&scene, Parameter::Omega, &values, window, &Settings::default(), || ())
-                .expect("runs");
-            let periods = Periods { settle: 20, record: 20 };
-            let orbits =
-                independent_orbits(&scene, Parameter::Omega, &values, periods, &Settings::default(), || ())
-                    .expect("runs");
-            (points, orbits)
+            independent(&scene, Parameter::Omega, &values, window, &Settings::default(), || ()).expect("runs")
         })
     };
     assert_eq!(run(1), run(2));

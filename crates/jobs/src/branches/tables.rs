@@ -154,13 +154,11 @@ pub fn summary(motions: &Motions) -> Value {
 /// # Errors
 /// The input of the results cannot be read.
 pub(super) fn again(place: &Path, name: &str) -> Result<Source, Error> {
-    let resolved = Resolved::read(place)?;
+    let (said, study) = Resolved::one(place)?;
     let refuse = |problem: &str| broken(place, SEVERAL, problem);
-    let plan = plan_of(&resolved.plan).ok_or_else(|| refuse("its plan cannot be read"))?;
-    let (_, study) = resolved.studies()?.into_iter().next().ok_or_else(|| refuse("it names no study"))?;
+    let plan = plan_of(&said).ok_or_else(|| refuse("its plan cannot be read"))?;
     if name == STARTS {
-        let value =
-            resolved.plan["basins"].as_f64().ok_or_else(|| refuse("`basins` is no number in its plan"))?;
+        let value = said["basins"].as_f64().ok_or_else(|| refuse("`basins` is no number in its plan"))?;
         let plane = Plane::new(&study.scene, plan, &study.solver.settings(), value, None)?;
         return Ok(Source::new(move |row| Some(vec![("motion".to_owned(), start(&plane, row))])));
     }

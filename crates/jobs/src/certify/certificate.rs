@@ -8,7 +8,7 @@ pub(super) mod verdict;
 
 pub use limits::{Kept, Near};
 pub use measured::{FINER, Measured, Motion, Neighbourhood, Run, Sensitivity, WorstRun};
-pub use motions::{Another, Irregular, MISSED, Margin, Motions, Other, ParameterError, SHARE, periodic};
+pub use motions::{Irregular, MISSED, Margin, Motions, Other, ParameterError, SHARE, periodic};
 pub use verdict::{Judged, Verdict};
 
 use super::records::Records;

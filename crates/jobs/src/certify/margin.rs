@@ -47,10 +47,7 @@ impl Place {
             // It cannot be followed: it may begin anywhere above the force that was looked at before.
             let before =
                 margin.forces.iter().copied().filter(|times| *times < found.times).fold(1.0, f64::max);
-            let value = Amount::new(measure, one.value);
-            let other =
-                Other { value, omega: one.at, k1, state: one.start, periods: None, impacts: String::new() };
-            margin.lower_to(before, other);
+            margin.lower_to(before, Other { k1: Some(k1), reached: None, ..Other::new(measure, &one) });
         }
         let scene = with_force(&self.scene, found.times)?;
         let shooting = equations(&scene, &self.plan(), settings)?;
@@ -58,10 +55,11 @@ impl Place {
         let other = |onset: &Onset| Other {
             value: Amount::new(measure, onset.orbit.seen.largest(measure)),
             omega: onset.omega,
-            k1,
+            k1: Some(k1),
             state: onset.orbit.seen.start,
             periods: Some(onset.orbit.periods),
             impacts: onset.orbit.seen.impacts.clone(),
+            reached: None,
         };
         let begins = |seeds: &[Seed]| onset(seeds, amplitude, DOWN * own, &counts);
         let onsets: Vec<Option<Onset>> = seeds.par_iter().map(|seeds| begins(seeds)).collect();

@@ -1,6 +1,6 @@
 //! The motions of a design beside those from rest, over the band of its objective and for every stiffness of it, at its own force and at more.
 
-use super::certificate::{Another, Irregular, MISSED, Margin, Motions, SHARE};
+use super::certificate::{Irregular, MISSED, Margin, Motions, Other, SHARE};
 use crate::amount::Amount;
 use rayon::prelude::*;
 use retune_dynamics::Error;
@@ -227,7 +227,7 @@ impl Place {
                 .largest
                 .first()
                 .and_then(Option::as_ref)
-                .map(|largest| Another::new(quantity, largest)),
+                .map(|largest| Other::new(quantity, largest)),
             irregular: irregular.collect(),
         }
     }

@@ -1,7 +1,7 @@
 //! The value of a design under other records than those of its study: the other sign, other draws, fewer samples.
 
 use super::certificate::verdict::or_none;
-use super::walls::Outcome;
+use super::walls::{Change, Changed, Outcome};
 use crate::Error;
 use crate::amount::Amount;
 use rayon::prelude::*;
@@ -12,13 +12,13 @@ use serde::Serialize;
 const DRAWS: u64 = 5;
 
 #[derive(Clone, Copy)]
-enum Change {
+enum Another {
     Sign,
     Samples,
     Draw(u64),
 }
 
-impl Change {
+impl Another {
     fn of(self, history: History) -> Option<History> {
         match self {
             Self::Sign => history.reversed(),
@@ -46,13 +46,13 @@ impl Change {
 pub(super) fn other_records(study: &Study, own: Amount) -> Option<Records> {
     // A stationary motion is that of the spectrum, whatever is drawn of it.
     study.scene.forcing.history().filter(|_| !study.objective().is_stationary())?;
-    let draws = (1..=DRAWS).map(Change::Draw);
-    let changes: Vec<Change> = [Change::Sign, Change::Samples].into_iter().chain(draws).collect();
-    let under: Vec<UnderRecord> = changes.into_par_iter().filter_map(|change| under(study, change)).collect();
+    let draws = (1..=DRAWS).map(Another::Draw);
+    let changes: Vec<Another> = [Another::Sign, Another::Samples].into_iter().chain(draws).collect();
+    let under: Vec<Changed> = changes.into_par_iter().filter_map(|change| under(study, change)).collect();
     (!under.is_empty()).then(|| Records::new(own, under))
 }
 
-fn under(study: &Study, change: Change) -> Option<UnderRecord> {
+fn under(study: &Study, change: Another) -> Option<Changed> {
     let (mut goal, mut scene, mut any) = (study.goal(), study.scene, false);
     let mut changed = |forcing: &mut Forcing| {
         if let Some(other) = change.forcing(forcing) {
@@ -62,8 +62,8 @@ fn under(study: &Study, change: Change) -> Option<UnderRecord> {
     changed(&mut scene.forcing);
     goal.objective.for_each_term(&mut |term| term.records.iter_mut().for_each(&mut changed));
     let found = |scene: &Scene| goal.evaluate(scene, &study.solver.settings(), f64::INFINITY);
-    any.then(|| UnderRecord {
-        under: change.words(),
+    any.then(|| Changed {
+        change: Change::Under(change.words()),
         found: Outcome::new(found(&scene).map_err(Error::from), !goal.limits.is_empty()),
     })
 }
@@ -71,20 +71,13 @@ fn under(study: &Study, change: Change) -> Option<UnderRecord> {
 #[derive(Clone, Debug, Serialize)]
 pub struct Records {
     words: String,
-    each: Vec<UnderRecord>,
-}
-
-#[derive(Clone, Debug, Serialize)]
-pub struct UnderRecord {
-    pub under: String,
-    #[serde(flatten)]
-    pub found: Outcome,
+    each: Vec<Changed>,
 }
 
 impl Records {
     /// Of a design with its own value.
-    pub fn new(Amount { quantity, value, .. }: Amount, each: Vec<UnderRecord>) -> Self {
-        let others = each.iter().map(|one| format!("{} {}", or_none(one.found.value, quantity), one.under));
+    pub fn new(Amount { quantity, value, .. }: Amount, each: Vec<Changed>) -> Self {
+        let others = each.iter().map(|one| one.words(quantity));
         let others = joined(&others.collect::<Vec<_>>(), ", ");
         let words = format!("{} {}; {others}", quantity.name(), or_none(value, quantity));
         Self { words, each }

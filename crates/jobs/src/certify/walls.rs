@@ -35,20 +35,22 @@ pub(super) fn other_walls(
         let found = scene.and_then(|scene| goal.evaluate(&scene, &settings, f64::INFINITY));
         Outcome::new(found.map_err(Error::from), !goal.limits.is_empty())
     };
-    let at = |&restitution: &f64| AtRestitution {
-        restitution,
-        found: found(&with_loss, with_restitution(*scene, restitution)),
+    let at = |&e: &f64| Changed {
+        change: Change::Restitution(e),
+        found: found(&with_loss, with_restitution(*scene, e)),
     };
     let stiffness = Parameter::Q.of(scene); // K is proportional to q; rigid walls have none
     let softer = |&factor: &f64| {
         let scene = with(*scene, Parameter::Q, factor * stiffness?);
-        Some(AtStiffness { factor, found: found(&goal, scene) })
+        Some(Changed { change: Change::Factor(factor), found: found(&goal, scene) })
     };
     let (restitutions, stiffness) = rayon::join(
         || RESTITUTIONS.par_iter().map(at).collect(),
         || FACTORS.par_iter().filter_map(softer).collect(),
     );
-    Some(Walls::new(study, own, sensitivity, restitutions, stiffness))
+    let mut walls = Walls { contacts: String::new(), restitutions, stiffness };
+    walls.contacts = walls.said(study, own, sensitivity);
+    Some(walls)
 }
 
 /// Whether the damper touches a wall in a run from rest over the band of the objective; said to, where that cannot be told.
@@ -84,24 +86,29 @@ const GROWTH: f64 = 0.1;
 pub struct Walls {
     contacts: String,
     /// From walls that lose nothing on; each in the place of the loss of the study.
-    restitutions: Vec<AtRestitution>,
+    restitutions: Vec<Changed>,
     /// Not of rigid walls.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    stiffness: Vec<AtStiffness>,
+    stiffness: Vec<Changed>,
 }
 
-/// The value with a restitution that is the same at every speed.
+/// What is otherwise than in the study.
 #[derive(Clone, Debug, Serialize)]
-pub struct AtRestitution {
-    pub restitution: f64,
+#[serde(rename_all = "lowercase")]
+pub enum Change {
+    /// The restitution, the same at every speed.
+    Restitution(f64),
+    /// The stiffness K of both walls, by this factor.
+    Factor(f64),
+    /// The record, in words.
+    Under(String),
+}
+
+/// The value with a change.
+#[derive(Clone, Debug, Serialize)]
+pub struct Changed {
     #[serde(flatten)]
-    pub found: Outcome,
-}
-
-/// The value with a multiple of the stiffness K of both walls.
-#[derive(Clone, Debug, Serialize)]
-pub struct AtStiffness {
-    pub factor: f64,
+    pub change: Change,
     #[serde(flatten)]
     pub found: Outcome,
 }
@@ -141,57 +148,48 @@ impl Outcome {
     }
 }
 
-impl AtRestitution {
-    fn place(&self) -> String {
-        format!("at e = {}", self.restitution)
+impl Changed {
+    /// The change in words, to stand behind a value.
+    pub fn place(&self) -> String {
+        match &self.change {
+            Change::Restitution(e) => format!("at e = {e}"),
+            Change::Factor(factor) => format!("with {factor} K"),
+            Change::Under(words) => words.clone(),
+        }
     }
-}
 
-impl AtStiffness {
-    fn place(&self) -> String {
-        format!("with {} K", self.factor)
+    /// The value with the change.
+    pub fn words(&self, quantity: Measure) -> String {
+        format!("{} {}", or_none(self.found.value, quantity), self.place())
     }
 }
 
 impl Walls {
-    /// Of a design with its own value, and what errors of its parameters make of it.
-    pub fn new(
-        study: &Study,
-        own: Amount,
-        sensitivity: &[Sensitivity],
-        restitutions: Vec<AtRestitution>,
-        stiffness: Vec<AtStiffness>,
-    ) -> Self {
-        let mut walls = Self { contacts: String::new(), restitutions, stiffness };
-        walls.contacts = walls.said(study, own, sensitivity);
-        walls
-    }
-
     pub fn words(&self) -> &str {
         &self.contacts
     }
 
-    pub fn all(&self) -> Vec<(String, &Outcome)> {
-        let restitutions = self.restitutions.iter().map(|one| (one.place(), &one.found));
-        restitutions.chain(self.stiffness.iter().map(|one| (one.place(), &one.found))).collect()
+    pub fn all(&self) -> impl Iterator<Item = &Changed> {
+        self.restitutions.iter().chain(&self.stiffness)
     }
 
     /// The restitution with the largest value; of several the largest restitution. None where none has a value.
-    pub fn worst(&self) -> Option<&AtRestitution> {
-        let known = self.restitutions.iter().filter(|one| one.found.value.is_finite());
-        known.reduce(|worst, one| if one.found.value > worst.found.value { one } else { worst })
+    pub fn worst(&self) -> Option<(f64, &Outcome)> {
+        let known = self.restitutions.iter().filter_map(|one| match one.change {
+            Change::Restitution(e) if one.found.value.is_finite() => Some((e, &one.found)),
+            _ => None,
+        });
+        known.reduce(|worst, one| if one.1.value > worst.1.value { one } else { worst })
     }
 
     fn said(&self, study: &Study, own: Amount, sensitivity: &[Sensitivity]) -> String {
         let mut words = self.largest(study, own, sensitivity);
-        let quantity = own.quantity;
         if !self.stiffness.is_empty() {
-            let each = self.stiffness.iter();
-            let each = each.map(|one| format!("{} {}", or_none(one.found.value, quantity), one.place()));
+            let each = self.stiffness.iter().map(|one| one.words(own.quantity));
             words += &format!("; {}, the stiffness of both walls", joined(&each.collect::<Vec<_>>(), ", "));
         }
         words += &self.reservations();
-        if self.worst().is_some_and(|worst| worst.found.value > (1.0 + GROWTH) * own.value) {
+        if self.worst().is_some_and(|(_, worst)| worst.value > (1.0 + GROWTH) * own.value) {
             let law = match Parameter::Restitution.of(&study.scene) {
                 Some(_) => "",
                 None => "give `contact.loss` a restitution alone and ",
@@ -212,15 +210,14 @@ impl Walls {
     ) -> String {
         let lossless = self.restitutions.first().map_or(f64::NAN, |one| one.found.value);
         let lossless = format!("{} {} without loss", quantity.name(), or_none(lossless, quantity));
-        let all = self.restitutions.iter().map(|one| one.restitution.to_string());
-        let all = joined(&all.collect::<Vec<_>>(), ", ");
-        let Some(AtRestitution { restitution, found }) = self.worst() else {
+        let all = joined(&RESTITUTIONS, ", ");
+        let Some((restitution, found)) = self.worst() else {
             return format!("{lossless}, and none at the restitutions {all}");
         };
         let motions = study.objective().terms().iter().any(|(_, term)| term.response == Response::Motions);
         let runs = if motions { "" } else { " in runs from rest" };
         let which = format!("the largest of the restitutions {all}{runs}, not a bound");
-        if *restitution == 1.0 {
+        if restitution == 1.0 {
             return format!("{lossless}, {which}");
         }
         let less = |one: &Sensitivity| one.worst < found.value;
@@ -231,17 +228,14 @@ impl Walls {
 
     /// What is to be known of single values.
     fn reservations(&self) -> String {
-        let all = self.all();
         let places = |is: fn(&Outcome) -> bool| {
-            let those = all.iter().filter(|(_, found)| is(found)).map(|(place, _)| place.as_str());
+            let those = self.all().filter(|one| is(&one.found)).map(Changed::place);
             joined(&those.collect::<Vec<_>>(), ", ")
         };
         let mut words = String::new();
-        for (place, Outcome { value, reason, .. }) in &all {
-            if !value.is_finite() {
-                let reason = reason.as_ref().map_or(String::new(), |reason| format!(" ({reason})"));
-                words += &format!("; no value {place}{reason}");
-            }
+        for one in self.all().filter(|one| !one.found.value.is_finite()) {
+            let reason = one.found.reason.as_ref().map_or(String::new(), |reason| format!(" ({reason})"));
+            words += &format!("; no value {}{reason}", one.place());
         }
         for (what, places) in [
             ("a limit is broken", places(|found| found.keeps_limits == Some(false))),
@@ -265,7 +259,7 @@ mod tests {
 
     #[test]
     fn contract_what_has_no_value_or_breaks_a_limit_is_told() {
-        let at = |restitution, found| AtRestitution { restitution, found };
+        let at = |e, found| Changed { change: Change::Restitution(e), found };
         let none = Outcome { reason: Some("too many steps".to_owned()), ..found(f64::INFINITY) };
         let broken = Outcome { keeps_limits: Some(false), ..found(300.0) };
         let late = Outcome { unsettled: 2, ..found(1.0) };
@@ -277,13 +271,13 @@ mod tests {
                 at(0.8, broken.clone()),
                 at(0.7, broken),
             ],
-            stiffness: vec![AtStiffness { factor: 2.0, found: late }],
+            stiffness: vec![Changed { change: Change::Factor(2.0), found: late }],
         };
         assert_eq!(
             walls.reservations(),
             "; no value at e = 0.9 (too many steps); a limit is broken at e = 0.8, at e = 0.7; runs had not settled with 2 K"
         );
-        assert_eq!(walls.worst().map(|worst| worst.restitution), Some(0.8));
+        assert_eq!(walls.worst().map(|(e, _)| e), Some(0.8));
         walls.restitutions.truncate(1);
         walls.restitutions.push(at(0.9, found(f64::NAN)));
         assert_eq!(walls.reservations(), "; no value at e = 0.9; runs had not settled with 2 K");

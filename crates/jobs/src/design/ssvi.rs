@@ -5,7 +5,7 @@
 //! It is no global search: `retune optimize` of the study that is written makes one. It takes seconds.
 
 use super::candidate::Candidate;
-use super::simplex::simplex;
+use super::tmd::simplex;
 use super::words::sized;
 use crate::tune::descent::descend;
 use crate::tune::objective::{coarse, kept, searched};

@@ -2,13 +2,13 @@
 //! the formulas of textbooks. It takes milliseconds; under a shock or a record, whose runs are followed in time, seconds.
 
 use super::requirements::Requirements;
-use super::simplex::simplex;
 use crate::Error;
 use crate::tune::objective::searched;
 use rayon::prelude::*;
 use retune_model::{Measure, Parameter, Primary, den_hartog, nishihara_asami, warburton};
-use retune_optim::Point;
-use retune_study::Study;
+use retune_optim::{INFEASIBLE, Point, minimize};
+use retune_study::{Search, Study};
+use std::ops::ControlFlow;
 
 /// Points of the grid along k2 and c2, from and to these multiples of Den Hartog's.
 const POINTS: usize = 16;
@@ -92,4 +92,14 @@ pub(super) fn best(study: &Study, formulas: &[Formula]) -> Result<[f64; 2], Erro
     let ends: Vec<Point> = starts.par_iter().map(down).collect();
     let best = ends.into_iter().min_by(|a, b| a.value.total_cmp(&b.value));
     Ok(best.and_then(|end| <[f64; 2]>::try_from(end.x).ok()).unwrap_or(scales))
+}
+
+/// What goes down where there are no derivatives, under a shock and a record: the end of the refinement of a search from a start; the start itself
+/// where none can begin there.
+pub(super) fn simplex(value: impl Fn(&[f64], f64) -> f64, search: &Search, start: &[f64]) -> Point {
+    let found = minimize(value, start, search.options.clone(), |_| ControlFlow::Continue(()));
+    found.map_or_else(
+        |_| Point { x: start.to_vec(), value: INFEASIBLE },
+        |minimum| Point { x: minimum.x, value: minimum.value },
+    )
 }

@@ -1,8 +1,8 @@
 //! The dampers of `losses` at each restitution, and their table.
 
-use crate::again::{Row, Source, broken};
+use crate::again::{Row, Source};
 use crate::contacts::Powers;
-use crate::resolved::{self, Resolved};
+use crate::resolved::Resolved;
 use crate::{Error, columns};
 use retune_model::{Design, Parameter};
 use retune_report::cells;
@@ -135,9 +135,7 @@ impl Losses {
 
 /// The rows of the table, computed again from design and restitution.
 pub(super) fn again(place: &Path, _name: &str) -> Result<Source, Error> {
-    let studies = Resolved::read(place)?.studies()?;
-    let none = || broken(place, resolved::SEVERAL, "it names no study");
-    let (_, study) = studies.into_iter().next().ok_or_else(none)?;
+    let (_, study) = Resolved::one(place)?;
     Ok(Source::new(move |row: Row| {
         let point = Point::new(&study, row.number("restitution"), row.design()?).ok()?;
         Some(point.numbers(&study).map(|(name, number)| (name.to_owned(), number)).into())

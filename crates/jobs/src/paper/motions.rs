@@ -11,8 +11,7 @@ use retune_dynamics::poincare::Periods;
 use retune_dynamics::record::coordinates;
 use retune_dynamics::regime::periodic_label;
 use retune_dynamics::{
-    Kind, Orbit, Parameter, Record, Regime, Stretch, attractor, classify, continuation, follow,
-    independent_orbits, resumed,
+    Kind, Orbit, Parameter, Record, Regime, Stretch, attractor, classify, continuation, follow, resumed,
 };
 use retune_model::Scene;
 use retune_report::cells;
@@ -63,8 +62,10 @@ impl Motions {
         let mut back = back?;
         back.reverse();
         let periods = Periods { settle: SETTLE[0], record: RECORD };
-        let rest = independent_orbits(scene, Parameter::Omega, &omega, periods, &settings, || bar.inc(1))?;
-        let orbits = [rest, up?, back];
+        let rest = of_each(&omega, bar, |value| {
+            Ok(continuation(scene, Parameter::Omega, &[*value], periods, &settings, || ())?)
+        })?;
+        let orbits = [rest.concat(), up?, back];
         let indices: Vec<usize> = (0..omega.len()).collect();
         let differ = |&index: &usize| coexisting(plan, scene, index, &records[index], &orbits);
         let coexisting = of_each(&indices, &Silent, differ)?.into_iter().flatten().collect();

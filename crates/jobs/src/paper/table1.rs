@@ -5,8 +5,9 @@ use super::item::Item;
 use super::measures::{Spread, at_omega, energy, near};
 use super::plan::{Plan, damper};
 use crate::Error;
+use crate::columns;
 use crate::rows::of_each;
-use crate::tune::log::{csv_header, scientific};
+use crate::tune::log::{columns as log_columns, scientific};
 use rayon::prelude::*;
 use retune_dynamics::{Stretch, classify, follow};
 use retune_model::{Measure, Scene};
@@ -303,7 +304,7 @@ fn search(plan: &Plan, start: [f64; 4], name: &str, item: &mut Item) -> Result<(
         .map_err(|source| Error::Search { source, failures: objective.failures() })?;
     let mut table =
         Table::headed("iteration | procedure | k2 opt, N/m | c2 opt, N·s/m | D opt, m | C opt, m | E1max, J");
-    let mut log = Table::named(&csv_header(&[], Measure::Energy));
+    let mut log = columns::table(&log_columns(&[], Measure::Energy));
     for (i, row) in rows.iter().enumerate() {
         let ([k2, c2, d, c], procedure) = (design(row), row.procedure.to_string());
         log.push(cells![row.iteration, row.func_count, procedure.as_str(), k2, c2, d, c, row.value]);

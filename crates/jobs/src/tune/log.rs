@@ -1,13 +1,14 @@
 //! The names of the files of a search, and the formats of a refinement's log.
 
 use crate::amount::measured;
+use crate::columns::symbols;
 use retune_model::{Measure, Parameter};
 use retune_optim::{Row, value_of};
-use retune_study::{fields, joined};
 
 /// Columns of `fminsearch.csv`.
-pub fn csv_header(varied: &[Parameter], quantity: Measure) -> String {
-    format!("iteration,func_count,procedure,{},{}", joined(&Parameter::columns(varied), ","), quantity.name())
+pub fn columns(varied: &[Parameter], quantity: Measure) -> Vec<&'static str> {
+    let design = Parameter::columns(varied);
+    [&["iteration", "func_count", "procedure"], &*symbols(&design), &[quantity.name()]].concat()
 }
 
 /// Columns of `fminsearch.txt`: those of the paper's Table 1.
@@ -21,12 +22,6 @@ pub fn table1_header(varied: &[Parameter], quantity: Measure) -> String {
 pub fn screen_header(varied: &[Parameter], quantity: Measure) -> String {
     let width = 16 * Parameter::columns(varied).len() + 15;
     format!(" iter evals  {:<width$} procedure", table1_header(varied, quantity))
-}
-
-/// A row of `fminsearch.csv`, with the values of its columns (SI units); numbers to the last bit.
-pub fn csv(row: &Row, values: &[f64]) -> String {
-    let Row { iteration, func_count, procedure, value, .. } = row;
-    format!("{iteration},{func_count},{procedure},{},{value}", fields(values))
 }
 
 /// A row of `fminsearch.txt`, in the format of the paper's Table 1.

@@ -35,34 +35,36 @@ pub fn kept<'a>(
 
 /// The objective of a study over some parameters of its damper.
 pub fn objective(study: &Study, search: &Search, variables: &[Parameter]) -> DesignObjective {
-    DesignObjective::new(
-        study.scene,
-        search.damper,
-        variables.to_vec(),
-        study.goal(),
-        study.solver.settings(),
-    )
+    with(study, search, variables, study.goal(), study.solver.settings())
 }
 
 /// The same at the tolerance of searches.
 pub fn searched(study: &Study, search: &Search, variables: &[Parameter]) -> DesignObjective {
-    let settings = study.solver.searching();
-    DesignObjective::new(study.scene, search.damper, variables.to_vec(), study.goal(), settings).following()
+    with(study, search, variables, study.goal(), study.solver.searching()).following()
 }
 
 /// The same at a relative tolerance, or at that of searches where it is looser.
 pub fn loose(study: &Study, search: &Search, variables: &[Parameter], rtol: f64) -> DesignObjective {
     let own = study.solver.searching();
     let settings = Settings { rtol: own.rtol.max(rtol), ..own };
-    DesignObjective::new(study.scene, search.damper, variables.to_vec(), study.goal(), settings).following()
+    with(study, search, variables, study.goal(), settings).following()
 }
 
 /// The same as exact as the study wants its grid: at the tolerance of `optimize.coarse`, and on samples alone if it says so.
 pub(crate) fn coarse(study: &Study, search: &Search, variables: &[Parameter]) -> DesignObjective {
     let (said, own) = (study.coarse(), study.solver.searching());
     let settings = Settings { rtol: said.rtol.unwrap_or(own.rtol), ..own };
-    let goal = Goal { peaks: said.peaks, ..study.goal() };
-    DesignObjective::new(study.scene, search.damper, variables.to_vec(), goal, settings).following()
+    with(study, search, variables, Goal { peaks: said.peaks, ..study.goal() }, settings).following()
+}
+
+fn with(
+    study: &Study,
+    search: &Search,
+    variables: &[Parameter],
+    goal: Goal,
+    settings: Settings,
+) -> DesignObjective {
+    DesignObjective::new(study.scene, search.damper, variables.to_vec(), goal, settings)
 }
 
 /// The value of a design as it stands in the tables: the worst over the band of its study on so many samples.

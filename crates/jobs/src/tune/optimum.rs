@@ -1,6 +1,7 @@
 //! The result of a search: one type, from which `optimum.json` and the last lines on screen are made.
 
 mod answer;
+pub(crate) mod flags;
 pub(crate) mod notes;
 
 use super::choice::PassedOver;

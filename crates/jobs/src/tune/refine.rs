@@ -6,7 +6,9 @@ use crate::Error;
 use crate::summary::MadeBy;
 use retune_model::Parameter;
 use retune_optim::{DesignObjective, Minimum, Row, minimize};
-use retune_store::{Directory, Journal, Pending};
+use retune_report::cells;
+use retune_report::table::{Cell, Table};
+use retune_store::{Directory, Journal};
 use retune_study::{Search, Study};
 use std::ops::ControlFlow;
 
@@ -50,8 +52,6 @@ impl Refined {
 /// Refines every start; writes `fminsearch-starts.csv` of all where there are several.
 pub(super) fn refine(task: &Task, starts: &[Vec<f64>], results: &Directory) -> Result<Refined, Error> {
     let Task { study, search, watch, .. } = *task;
-    let mut all = results.file(STARTS)?;
-    all.push_line(&format!("start,{}", log::csv_header(&search.variables, study.quantity())))?;
     let mut begun = 0;
     let refined = each(task, starts, |number, row, design| {
         if number > begun {
@@ -62,13 +62,31 @@ pub(super) fn refine(task: &Task, starts: &[Vec<f64>], results: &Directory) -> R
                 log::screen_header(&search.variables, study.quantity())
             ))?;
         }
-        all.push_line(&format!("{number},{}", log::csv(row, design)))?;
         watch.log(&log::screen(row, design))
     })?;
     if refined.starts > 1 {
-        all.finish()?;
+        let mut all = Table::named("start");
+        all.columns.extend(crate::columns::table(&log::columns(&search.variables, study.quantity())).columns);
+        for (number, run) in refined.runs.iter().enumerate() {
+            let rows = table(study, &refined, run)?.rows;
+            all.rows.extend(rows.into_iter().map(|row| [cells![number + 1], row].concat()));
+        }
+        results.write(STARTS, &all.csv())?;
     }
     Ok(refined)
+}
+
+/// A row for each iteration of a run, with its whole design.
+fn table(study: &Study, refined: &Refined, run: &Run) -> Result<Table, Error> {
+    let names = log::columns(refined.objective.variables(), study.quantity());
+    let mut table = crate::columns::table(&names);
+    for row in &run.rows {
+        let Row { iteration, func_count, procedure, value, .. } = row;
+        let design = columns(&refined.objective, &row.best)?.into_iter().chain([*value]).map(Cell::Number);
+        table
+            .push(cells![*iteration, *func_count, procedure.to_string()].into_iter().chain(design).collect());
+    }
+    Ok(table)
 }
 
 /// Refines every start. `tell` receives the number of the start, from 1, each row and its whole design; its error ends the run.
@@ -164,17 +182,10 @@ fn simplex(
 /// Writes `fminsearch.csv` and `fminsearch.txt` of the run that was chosen.
 pub(super) fn write_winner(study: &Study, refined: &Refined, results: &Directory) -> Result<(), Error> {
     let varied = refined.objective.variables();
-    let mut csv = results.file(LOG)?;
-    let mut txt: Pending = results.file("fminsearch.txt")?;
-    csv.push(&format!("{}\n", log::csv_header(varied, study.quantity())))?;
-    txt.push(&format!("{}\n", log::table1_header(varied, study.quantity())))?;
+    results.write(LOG, &table(study, refined, refined.best())?.csv())?;
+    let mut lines = vec![log::table1_header(varied, study.quantity())];
     for row in &refined.best().rows {
-        let design = columns(&refined.objective, &row.best)?;
-        csv.push(&format!("{}\n", log::csv(row, &design)))?;
-        txt.push(&format!("{}\n", log::table1(row, &design)))?;
+        lines.push(log::table1(row, &columns(&refined.objective, &row.best)?));
     }
-    txt.push(&format!("\n{}\n", MadeBy::new(study)))?;
-    csv.finish()?;
-    txt.finish()?;
-    Ok(())
+    Ok(results.write("fminsearch.txt", &format!("{}\n\n{}\n", lines.join("\n"), MadeBy::new(study)))?)
 }

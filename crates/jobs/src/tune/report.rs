@@ -1,15 +1,14 @@
 //! The page of a search, `report.html`: the answer first, then how sure it is and how it was found. One file that needs no network
 //! and no script. Every number on it is computed or read from what the search has found; nothing is stated that was not.
 //!
-//! Read `findings` (what a page is made of), `answer` and `flags`, then the sections in their order on the page: `response`,
+//! Read `findings` (what a page is made of), `answer`, then the sections in their order on the page: `response`,
 //! `motion`, `sensitivity`, `course`. `numbers` has how numbers are written, `retune_report::html` the elements.
 
 mod answer;
 mod course;
 mod findings;
-mod flags;
 mod motion;
-mod numbers;
+pub(super) mod numbers;
 mod response;
 mod sensitivity;
 
@@ -26,7 +25,7 @@ pub const FILE: &str = "report.html";
 
 /// Writes the page, after all other files of the results but those that say what made them.
 pub(crate) fn write(findings: &Findings, results: &Directory) -> Result<(), Error> {
-    let flags = flags::flags(findings);
+    let flags = findings.optimum.flags();
     let compared = findings.compared();
     // A motion without a frequency has no response over frequencies.
     let over_frequency =

@@ -70,8 +70,8 @@ impl Rows for Designs {
 /// Computes the grid of a study, if it has one, and writes `surf.csv`.
 pub(super) fn surf(task: &Task, results: &Directory) -> Result<Option<Surf>, Error> {
     let Task { study, search, journal, watch, .. } = *task;
-    let Some((variables, grid)) = search.surf.clone() else { return Ok(None) };
-    let (objective, most) = (coarse(study, search, &variables), study.coarse().up_to());
+    let Some(rows) = Designs::of(study, search) else { return Ok(None) };
+    let (grid, variables) = (&rows.grid, rows.objective.variables().to_vec());
     let axes: Vec<String> = grid.axes().iter().map(|axis| axis.points().to_string()).collect();
     let (axes, points, over) =
         (axes.join(" x "), counted(grid.len() as u64, "point"), joined(&variables, " "));
@@ -81,7 +81,6 @@ pub(super) fn surf(task: &Task, results: &Directory) -> Result<Option<Surf>, Err
 
     let begun = Instant::now();
     let bar = watch.progress("surf", grid.len() as u64);
-    let rows = Designs { objective, most, grid };
     let found = compute(&rows, 0..rows.len(), journal, &*bar);
     let Designs { objective, grid, .. } = rows;
     let values: Vec<f64> = found.into_iter().flat_map(|(numbers, _)| numbers).collect();

@@ -100,7 +100,7 @@ fn contract_limits_that_no_design_keeps_leave_no_verdict() {
     let desk = Desk::with(&study);
     let optimum = found(good(tune(&request(&desk, "study.json", "out"), &Silent)));
     let said = flat(&optimum.report());
-    assert!(said.contains(" evaluations; the nearest: stroke "), "{said}");
+    assert!(said.contains(" evaluations; this one comes nearest. Broken: stroke "), "{said}");
     let no_verdict = "no verdict, for the design breaks the limit of stroke: ";
     assert!(said.contains(&format!("verdict {no_verdict}")), "{said}");
     let infeasible = |error| match error {

@@ -152,8 +152,9 @@ impl DesignObjective {
         self.counts[0].fetch_add(1, Relaxed);
         let runs = Mutex::new(Vec::new());
         let keep = |run| runs.lock().unwrap_or_else(PoisonError::into_inner).push(run);
-        let found =
-            self.scene(design).and_then(|scene| self.goal.evaluate_and(&scene, &self.settings, cutoff, keep));
+        let hooks = Hooks { keep: &keep, ..FREE };
+        let found = self.scene(design);
+        let found = found.and_then(|scene| self.goal.evaluate_with(&scene, &self.settings, cutoff, hooks));
         let height = found.map_or(Height { worst: f64::INFINITY, violation: 0.0 }, |found| Height {
             worst: found.value,
             violation: found.violation,

@@ -6,7 +6,7 @@
 
 use super::band::{Band, all_worst_over};
 use super::ensemble::{SLACK, statistic_over};
-use super::evaluation::{Evaluation, Place, Run};
+use super::evaluation::{Evaluation, Place};
 use super::limits::{INFEASIBLE, Limits, PerLimit, ranked};
 use super::motions::{Known, Sought};
 use super::runs::{FREE, Hooks, Largest, Numbered, Observed, Proceed, Runs, Seen};
@@ -24,20 +24,6 @@ impl Goal {
     /// A run could not be finished, or the damper of a steady motion reaches a wall.
     pub fn evaluate(&self, scene: &Scene, settings: &Settings, cutoff: f64) -> Result<Evaluation, Unusable> {
         self.evaluate_with(scene, settings, cutoff, FREE)
-    }
-
-    /// The same, and `keep` is given each run, in any order.
-    ///
-    /// # Errors
-    /// As [`Self::evaluate`].
-    pub fn evaluate_and(
-        &self,
-        scene: &Scene,
-        settings: &Settings,
-        cutoff: f64,
-        keep: impl Fn(Run) + Sync,
-    ) -> Result<Evaluation, Unusable> {
-        self.evaluate_with(scene, settings, cutoff, Hooks { keep: &keep, ..FREE })
     }
 
     /// The same as long as `proceed` says so, which is asked before each run in time.

@@ -114,7 +114,7 @@ fn contract_limits_that_no_design_keeps_exit_with_3() {
     desk.write_json("none.json", &study);
     let Answer { code, stdout, stderr } = desk.run(&["optimize", "none.json", "--quiet"]);
     let stdout = flat(&stdout);
-    assert!(stdout.contains("NONE FOUND THAT KEEPS THE LIMITS in "), "{stdout}");
+    assert!(stdout.contains("None found that keeps the limits in "), "{stdout}");
     let words = "no verdict, for the design breaks the limit of stroke: ";
     assert!(stdout.contains(&format!("verdict {words}")), "{stdout}");
     assert_eq!(code, Some(3));

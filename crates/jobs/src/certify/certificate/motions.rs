@@ -1,7 +1,7 @@
 //! The motions that a certificate knows of beside those from rest.
 
 use crate::amount::{Amount, measured};
-use retune_dynamics::periodic::Largest;
+use retune_dynamics::periodic::{Largest, Share};
 use retune_model::Measure;
 use retune_study::{counted, rounded, short};
 use serde::Serialize;
@@ -33,22 +33,33 @@ pub struct Motions {
     /// The share of the band over which a stable periodic motion is known.
     pub covered: f64,
     /// The largest value; null where nothing was found.
-    pub largest: Option<Another>,
+    pub largest: Option<Other>,
     /// The parts of the band without a known stable motion.
     pub irregular: Vec<Irregular>,
 }
 
+/// A motion with a large value.
 #[derive(Clone, Debug, Serialize)]
-pub struct Another {
+pub struct Other {
     #[serde(flatten)]
     pub value: Amount,
     pub omega: f64,
+    /// Where it is told on its own, N/m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub k1: Option<f64>,
     /// `[x1, v1, x2, v2]` of it at a crest of the force, to run it again from.
     pub state: [f64; 4],
     /// Periods of the force after which it repeats; null where it does not.
     pub periods: Option<usize>,
     /// The walls that it strikes in turn: S the structure, O the obstacle.
     pub impacts: String,
+    /// None where no starts were counted.
+    #[serde(flatten)]
+    pub reached: Option<Reached>,
+}
+
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Reached {
     /// Whether a run from rest leads to it, or to its branch elsewhere in the band.
     pub from_rest: bool,
     /// How many starts end on it or on its branch, of those that were made where that is stable.
@@ -72,24 +83,25 @@ pub fn periodic(periods: usize, impacts: &str) -> String {
     format!("{}, {impacts}", counted(periods as u64, "period"))
 }
 
-impl Another {
+impl Other {
     pub fn new(quantity: Measure, found: &Largest) -> Self {
+        let Share { ends, starts, .. } = found.share;
         Self {
             value: Amount::new(quantity, found.value),
             omega: found.at,
+            k1: None,
             state: found.start,
             periods: found.orbit.as_ref().map(|orbit| orbit.periods),
             impacts: found.orbit.as_ref().map(|orbit| orbit.seen.impacts.clone()).unwrap_or_default(),
-            from_rest: found.from_rest,
-            ends: found.share.ends,
-            starts: found.share.starts,
+            reached: Some(Reached { from_rest: found.from_rest, ends, starts }),
         }
     }
 
     pub fn words(&self) -> String {
-        let Self { value, omega, periods, impacts, .. } = self;
+        let Self { value, omega, k1, periods, impacts, .. } = self;
         let kind = periods.map_or_else(|| "irregular".to_owned(), |n| periodic(n, impacts));
-        format!("{} at omega = {} rad/s ({kind})", measured(value.value, value.quantity), short(*omega))
+        let k1 = k1.map_or_else(String::new, |k1| format!(", k1 = {} N/m", short(k1)));
+        format!("{} at omega = {} rad/s{k1} ({kind})", measured(value.value, value.quantity), short(*omega))
     }
 
     /// How to run it again, with a study or results that hold the design.
@@ -99,11 +111,16 @@ impl Another {
         format!("`retune simulate STUDY --set omega={omega} --set k1={k1} --from {state}` runs it again")
     }
 
+    pub fn is_from_rest(&self) -> bool {
+        self.reached.is_some_and(|reached| reached.from_rest)
+    }
+
     pub fn reached(&self) -> String {
-        if self.from_rest {
-            "runs from rest lead there".to_owned()
-        } else {
-            format!("{} of {} starts where it is stable end there, none from rest", self.ends, self.starts)
+        match self.reached {
+            Some(Reached { from_rest: false, ends, starts }) => {
+                format!("{ends} of {starts} starts where it is stable end there, none from rest")
+            }
+            _ => "runs from rest lead there".to_owned(),
         }
     }
 }
@@ -164,21 +181,6 @@ impl Motions {
     }
 }
 
-/// A motion with 5 % more than runs from rest, where it begins.
-#[derive(Clone, Debug, Serialize)]
-pub struct Other {
-    #[serde(flatten)]
-    pub value: Amount,
-    pub omega: f64,
-    pub k1: f64,
-    /// `[x1, v1, x2, v2]` of it at a crest of the force.
-    pub state: [f64; 4],
-    /// Periods of the force after which it repeats; null where it does not.
-    pub periods: Option<usize>,
-    /// The walls that it strikes in turn: S the structure, O the obstacle.
-    pub impacts: String,
-}
-
 /// The margins of a design. Forces are multiples of its own.
 #[derive(Clone, Debug, Serialize)]
 pub struct Margin {
@@ -203,15 +205,6 @@ pub struct ParameterError {
     pub percent: f64,
     #[serde(flatten)]
     pub other: Other,
-}
-
-impl Other {
-    pub fn words(&self) -> String {
-        let Self { value, omega, k1, periods, impacts, .. } = self;
-        let kind = periods.map_or_else(|| "irregular".to_owned(), |n| periodic(n, impacts));
-        let (omega, k1) = (short(*omega), short(*k1));
-        format!("{} at omega = {omega} rad/s, k1 = {k1} N/m ({kind})", measured(value.value, value.quantity))
-    }
 }
 
 impl Margin {

@@ -53,7 +53,7 @@ impl std::fmt::Display for Certificate {
         if let Some(motions) = &measured.motions {
             writeln!(f, "motions       {}", motions.words())?;
             writeln!(f, "              {}", motions.missed())?;
-            if let Some(other) = motions.largest.as_ref().filter(|other| !other.from_rest) {
+            if let Some(other) = motions.largest.as_ref().filter(|other| !other.is_from_rest()) {
                 writeln!(f, "              {}", other.again(motions.k1))?;
             }
         }

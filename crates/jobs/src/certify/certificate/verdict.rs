@@ -184,7 +184,7 @@ fn motion_finding(all: &Measured, said: &str) -> Option<Finding> {
     let motions = all.motions.as_ref()?;
     let other = motions.largest.as_ref().filter(|_| motions.ratio() > 1.0 + WIDE)?;
     let motion = other.words();
-    let (alone, beside) = if other.from_rest {
+    let (alone, beside) = if other.is_from_rest() {
         let beside = format!("runs from rest between its samples, or longer ones, lead to {motion}");
         (format!("robust on the runs of the study only: {said}; but {beside}"), beside)
     } else {

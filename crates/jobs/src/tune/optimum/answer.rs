@@ -1,7 +1,7 @@
 //! The answer of a search in words: what to build, what it does, how sure that is, and what to do next. Lines fit 80 columns.
 
-use super::notes::{self, Goal, LimitNote};
-use super::{DescentNote, FailureNote, Optimum, RunNote, Valley, stop_words};
+use super::notes::LimitNote;
+use super::{DescentNote, Optimum, PassedOver, RunNote, Valley, stop_words};
 use crate::amount::Amount;
 use crate::certify::Verdict;
 use crate::needs::Needs;
@@ -23,8 +23,8 @@ impl Optimum {
         let mut lines = vec![String::new()];
         let mut say = |words: String| lines.push(wrapped(&words, "  "));
         say(self.headline());
-        let missed = self.certificate.missed_peak().map(|words| format!("{words}; take more samples"));
-        let warnings = missed.into_iter().chain(self.needs.iter().flat_map(Needs::warnings));
+        let flags = self.flags().into_iter().map(|flag| flag.words.trim_end_matches('.').to_owned());
+        let warnings = flags.chain(self.needs.iter().flat_map(Needs::warnings));
         warnings.for_each(|words| say(format!("  note: {words}")));
         say(format!("  {}", self.compared()));
         let values = self.damper.words(|variable| self.digits(variable)).replace(", ", ",");
@@ -38,10 +38,12 @@ impl Optimum {
         }
         say(format!("  motion   {}", self.certificate.measured.motion.sentence));
         say(format!("  verdict  {}", self.certificate.verdict_words()));
-        if let Some(limits) = &self.limits {
-            say(format!("  {}", limits.report()));
-        }
-        self.notes().into_iter().for_each(|note| say(format!("  {note}")));
+        self.limits.iter().filter_map(LimitNote::kept).for_each(|kept| say(format!("  {kept}")));
+        let notes = self.of.transient().map(|words| format!("note: {words}"));
+        notes
+            .into_iter()
+            .chain(self.passed_over.iter().map(PassedOver::words))
+            .for_each(|note| say(format!("  {note}")));
         say(format!("  from     {}", self.made_by));
         lines.join("\n")
     }
@@ -125,33 +127,6 @@ impl Optimum {
         };
         format!("instead  {} without a damper, {study}", times(self.none))
     }
-
-    /// All that a reader has to know before the design is used.
-    fn notes(&self) -> Vec<String> {
-        let mut lines: Vec<String> =
-            self.of.transient().iter().map(|words| format!("note: {words}")).collect();
-        if let Some(Goal { unsettled: Some(unsettled @ 1..), runs: Some(runs), .. }) = &self.objective {
-            lines.push(format!(
-                "note: {unsettled} of {} of this design had not settled at T; their value is that of the window",
-                counted(*runs, "run")
-            ));
-        }
-        lines.extend(self.passed_over.iter().map(|passed| passed.words()));
-        lines.extend(notes::on_bound_words(&self.on_bound));
-        if !self.on_edge.is_empty() {
-            let names: Vec<&str> =
-                self.on_edge.iter().map(|variable: &Parameter| variable.symbol()).collect();
-            lines.push(format!(
-                "note: the best point of the grid lies at its edge in {}: a wider grid may lead elsewhere",
-                names.join(", ")
-            ));
-        }
-        if let FailureNote { count, example: Some(example) } = &self.failures {
-            let count = counted(*count, "design");
-            lines.push(format!("note: {count} could not be computed, for instance {example}"));
-        }
-        lines
-    }
 }
 
 /// Paragraphs in lines of at most [`COLUMNS`] columns; the first may be indented.
@@ -170,26 +145,20 @@ fn wrapped(text: &str, indent: &str) -> String {
 }
 
 impl LimitNote {
-    pub(super) fn report(&self) -> String {
-        let Self { allowed, feasible, proven, active, evaluations, infeasible, .. } = self;
+    /// How near the limits are, where they are kept.
+    fn kept(&self) -> Option<String> {
+        let Self { allowed, feasible, active, evaluations, infeasible, .. } = self;
         let words = self.reached.iter().filter_map(|(limit, reached)| {
-            let allowed = allowed.get(*limit)?;
-            let over = 100.0 * (reached / allowed - 1.0);
-            let note = match active.contains(limit) {
-                _ if over > 0.0 => format!(", over by {} %", short(over)),
-                true => ", active".to_owned(),
-                false => String::new(),
-            };
-            Some(format!("{limit} {} of {} {}{note}", short(*reached), short(allowed), limit.unit()))
+            let note = if active.contains(limit) { ", active" } else { "" };
+            Some(format!(
+                "{limit} {} of {} {}{note}",
+                short(*reached),
+                short(allowed.get(*limit)?),
+                limit.unit()
+            ))
         });
-        let words = words.collect::<Vec<_>>().join("; ");
-        let evaluations = counted(*evaluations, "evaluation");
-        if *feasible {
-            format!("limits kept: {words}; {infeasible} of {evaluations} broke one")
-        } else if *proven {
-            format!("NO DESIGN WITHIN THE BOUNDS KEEPS THE LIMITS; the nearest: {words}")
-        } else {
-            format!("NONE FOUND THAT KEEPS THE LIMITS in {evaluations}; the nearest: {words}")
-        }
+        let (words, evaluations) =
+            (words.collect::<Vec<_>>().join("; "), counted(*evaluations, "evaluation"));
+        feasible.then(|| format!("limits kept: {words}; {infeasible} of {evaluations} broke one"))
     }
 }

@@ -5,7 +5,7 @@ use super::super::refine::{Refined, Run};
 use super::super::surf::Surf;
 use retune_model::Scene;
 use retune_optim::{Bounds, Evaluation, FrequencyBand, Limit, Limits, Objective, Parameter, Response};
-use retune_study::{Search, Study, joined};
+use retune_study::{Search, Study};
 use serde::{Serialize, Serializer};
 
 /// The objective, and the ω at which E1max of the best design is reached, rad/s.
@@ -154,21 +154,6 @@ fn met(value: f64, start: f64, Bounds { lower, upper }: Bounds) -> Option<f64> {
     [lower, upper].into_iter().flatten().find(|bound| (value - bound).abs() <= near)
 }
 
-/// The notes on the screen: a value at zero is at a physical limit, another bound can be widened.
-pub(super) fn on_bound_words(met: &[Met]) -> Vec<String> {
-    let (zero, wider): (Vec<&Met>, Vec<&Met>) = met.iter().partition(|met| met.bound == 0.0);
-    let names = |met: &[&Met]| joined(&met.iter().map(|met| met.variable).collect::<Vec<_>>(), ", ");
-    let mut notes = Vec::new();
-    if !zero.is_empty() {
-        notes.push(format!("note: {} ended on 0, the least that is possible", names(&zero)));
-    }
-    if !wider.is_empty() {
-        let names = names(&wider);
-        notes.push(format!("note: {names} ended on a bound of the study; a wider one may give less"));
-    }
-    notes
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -183,10 +168,7 @@ mod tests {
         assert_eq!(met(599.83, 600.0, closed), Some(600.0));
         assert_eq!(met(10.0 + 1e-8, 10.0, closed), Some(10.0));
         assert_eq!([met(590.0, 300.0, closed), met(1e-4, 2e-4, open)], [None, None]);
-        let on = |variable, bound| Met { variable, bound };
-        let said = on_bound_words(&[on(Parameter::D, 0.0), on(Parameter::K2, 600.0)]);
-        assert_eq!(said[0], "note: D ended on 0, the least that is possible");
-        assert_eq!(said[1], "note: k2 ended on a bound of the study; a wider one may give less");
-        assert_eq!(serde_json::to_string(&on(Parameter::D, 0.0)).ok().as_deref(), Some("\"D\""));
+        let on_zero = Met { variable: Parameter::D, bound: 0.0 };
+        assert_eq!(serde_json::to_string(&on_zero).ok().as_deref(), Some("\"D\""));
     }
 }

@@ -1,12 +1,12 @@
 //! The answer: the damper, what it does, how sure that is, and what to do next.
 
 use super::findings::{Compared, Findings};
-use super::flags::Flag;
 use super::numbers::{amount, compared, digits, four, frequency};
 use crate::certify::Walls;
 use crate::describe::forced;
 use crate::needs::{Needs, sized};
 use crate::summary::baseline;
+use crate::tune::optimum::flags::Flag;
 use maud::{Markup, html};
 use retune_model::{Measure, Parameter};
 use retune_optim::{Evaluation, Response, Unusable};
@@ -134,11 +134,11 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
 
 /// What other restitutions make of the value, in short.
 fn contacts(walls: &Walls, own: f64, quantity: Measure) -> String {
-    walls.worst().map_or("no value with a loss".to_owned(), |worst| {
-        let percent = 100.0 * (worst.found.value / own - 1.0);
+    walls.worst().map_or("no value with a loss".to_owned(), |(e, worst)| {
+        let percent = 100.0 * (worst.value / own - 1.0);
         let sign = if percent > 0.0 { "+" } else { "" };
         let change = digits(percent, 3);
-        format!("{} at e = {} ({sign}{change} %)", amount(worst.found.value, quantity), worst.restitution)
+        format!("{} at e = {e} ({sign}{change} %)", amount(worst.value, quantity))
     })
 }
 

@@ -71,7 +71,8 @@ fn walls_table(findings: &Findings, walls: &Walls) -> Table {
     let title =
         format!("{} with other walls: e is the restitution at every speed, K the stiffness", quantity.name());
     let mut table = Table::new(title, &head);
-    for (place, found) in walls.all() {
+    for one in walls.all() {
+        let (place, found) = (one.place(), &one.found);
         let percent = 100.0 * (found.value / own - 1.0);
         let sign = if percent > 0.0 && percent.is_finite() { "+" } else { "" };
         let value = if found.value.is_finite() { four(found.value) } else { "no value".to_owned() };

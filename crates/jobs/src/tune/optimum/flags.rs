@@ -1,9 +1,8 @@
-//! What a reader must know before using the answer: each flag says what is so, where, and what to do about it.
+//! What a reader must know before using the answer, on screen and on its page: each flag says what is so, where, and what to do about it.
 
-use super::findings::Findings;
-use super::numbers::{amount, four};
-use crate::tune::optimum::notes::{Goal, Met};
-use crate::tune::optimum::{FailureNote, stop_words};
+use super::notes::{Goal, Met};
+use super::{FailureNote, Optimum, stop_words};
+use crate::tune::report::numbers::{amount, four};
 use retune_optim::{Limit, Stop};
 use retune_study::{counted, joined};
 
@@ -25,27 +24,30 @@ impl Flag {
     }
 }
 
-/// The flags of a result, the gravest first.
-pub fn flags(findings: &Findings) -> Vec<Flag> {
-    let all = [
-        broken(findings),
-        findings.optimum.certificate.missed_peak().map(|words| {
+impl Optimum {
+    /// The flags of a result, the gravest first.
+    pub(crate) fn flags(&self) -> Vec<Flag> {
+        let missed = self.certificate.missed_peak().map(|words| {
             Flag::new("missed-peak", format!("{words}.")).with("more samples in optimize.objective.omega")
-        }),
-        near_a_limit(findings),
-        on_bound(findings),
-        edge(findings),
-        stopped(findings),
-        irregular(findings),
-        not_predictable(findings),
-        unsettled(findings),
-        failed(findings),
-    ];
-    all.into_iter().flatten().collect()
+        });
+        let all = [
+            broken(self),
+            missed,
+            near_a_limit(self),
+            on_bound(self),
+            edge(self),
+            stopped(self),
+            irregular(self),
+            not_predictable(self),
+            unsettled(self),
+            failed(self),
+        ];
+        all.into_iter().flatten().collect()
+    }
 }
 
-fn broken(findings: &Findings) -> Option<Flag> {
-    let note = findings.optimum.limits.as_ref().filter(|note| !note.feasible)?;
+fn broken(optimum: &Optimum) -> Option<Flag> {
+    let note = optimum.limits.as_ref().filter(|note| !note.feasible)?;
     let broken = note.reached.iter().filter_map(|&(limit, reached)| {
         let allowed = note.allowed.get(limit).filter(|allowed| reached > *allowed)?;
         let over = four(100.0 * (reached / allowed - 1.0));
@@ -64,15 +66,15 @@ fn broken(findings: &Findings) -> Option<Flag> {
     Some(Flag::new("limits-broken", words).with(change))
 }
 
-fn near_a_limit(findings: &Findings) -> Option<Flag> {
-    let near = findings.measured().limits.as_ref()?.broken_near()?;
+fn near_a_limit(optimum: &Optimum) -> Option<Flag> {
+    let near = optimum.certificate.measured.limits.as_ref()?.broken_near()?;
     let words = format!("The design keeps the limits, but designs near it do not: {near}.");
-    let kept = findings.optimum.limits.as_ref().is_some_and(|note| note.feasible);
+    let kept = optimum.limits.as_ref().is_some_and(|note| note.feasible);
     kept.then(|| Flag::new("near-a-limit", words).with("a limit with some margin"))
 }
 
-fn on_bound(findings: &Findings) -> Option<Flag> {
-    let met = &findings.optimum.on_bound;
+fn on_bound(optimum: &Optimum) -> Option<Flag> {
+    let met = &optimum.on_bound;
     let words = |Met { variable, bound }: &Met| match bound {
         0.0 => format!("{variable} on 0, the least that is possible"),
         _ => format!("{variable} on {} {}; a wider bound may give less", four(*bound), variable.unit()),
@@ -86,8 +88,8 @@ fn on_bound(findings: &Findings) -> Option<Flag> {
 }
 
 /// The best point of the grid is at the first or last value of an axis that could be longer.
-fn edge(findings: &Findings) -> Option<Flag> {
-    let names = joined(&findings.optimum.on_edge, ", ");
+fn edge(optimum: &Optimum) -> Option<Flag> {
+    let names = joined(&optimum.on_edge, ", ");
     let words = format!(
         "The best point of the grid lies at its edge in {names}: there may be better designs beyond it."
     );
@@ -95,8 +97,8 @@ fn edge(findings: &Findings) -> Option<Flag> {
     (!names.is_empty()).then(flag)
 }
 
-fn stopped(findings: &Findings) -> Option<Flag> {
-    let stop = findings.refined.best().minimum.stop;
+fn stopped(optimum: &Optimum) -> Option<Flag> {
+    let stop = optimum.refine.runs[optimum.refine.winner - 1].stop;
     let limit = match stop {
         Stop::Converged => return None,
         Stop::MaxIter => "a larger MaxIter",
@@ -107,8 +109,8 @@ fn stopped(findings: &Findings) -> Option<Flag> {
     Some(Flag::new("not-converged", words).with(format!("{limit} in optimize.refine")))
 }
 
-fn irregular(findings: &Findings) -> Option<Flag> {
-    let (motion, name) = (&findings.measured().motion, findings.quantity().name());
+fn irregular(optimum: &Optimum) -> Option<Flag> {
+    let (motion, name) = (&optimum.certificate.measured.motion, optimum.value.quantity.name());
     let words = format!(
         "The motion at the worst frequency is irregular ({}): designs that are practically equal can differ much in {name}.",
         motion.regime
@@ -117,8 +119,8 @@ fn irregular(findings: &Findings) -> Option<Flag> {
     motion.irregular.then(|| Flag::new("irregular", words).with(change))
 }
 
-fn not_predictable(findings: &Findings) -> Option<Flag> {
-    let (judged, quantity) = (&findings.optimum.certificate.judged, findings.quantity());
+fn not_predictable(optimum: &Optimum) -> Option<Flag> {
+    let (judged, quantity) = (&optimum.certificate.judged, optimum.value.quantity);
     let words = format!(
         "{} of the worst run is not predictable: equally good ways to compute it differ by up to {}.",
         quantity.name(),
@@ -127,8 +129,8 @@ fn not_predictable(findings: &Findings) -> Option<Flag> {
     (!judged.predictable).then(|| Flag::new("not-predictable", words))
 }
 
-fn unsettled(findings: &Findings) -> Option<Flag> {
-    let Goal { unsettled, runs, .. } = findings.optimum.objective.as_ref()?;
+fn unsettled(optimum: &Optimum) -> Option<Flag> {
+    let Goal { unsettled, runs, .. } = optimum.objective.as_ref()?;
     let (unsettled, runs) = (unsettled.filter(|count| *count > 0)?, counted((*runs)?, "run"));
     let words = format!(
         "{unsettled} of {runs} of this design had not settled at the end of the run; their value is that of the window."
@@ -136,8 +138,8 @@ fn unsettled(findings: &Findings) -> Option<Flag> {
     Some(Flag::new("unsettled", words).with("a larger T in window"))
 }
 
-fn failed(findings: &Findings) -> Option<Flag> {
-    let FailureNote { count, example } = &findings.optimum.failures;
+fn failed(optimum: &Optimum) -> Option<Flag> {
+    let FailureNote { count, example } = &optimum.failures;
     let example = example.iter().map(|example| format!(", for instance {example}")).collect::<String>();
     let words = format!("{} could not be computed{example}.", counted(*count, "design"));
     (*count > 0).then(|| Flag::new("failures", words))
