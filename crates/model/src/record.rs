@@ -1,8 +1,11 @@
 //! A record: samples in time with straight lines between them.
 
+mod spacing;
+
 use crate::excitation::Stretch;
 use crate::{Finite, Unit};
 use serde::{Deserialize, Serialize};
+pub use spacing::Spacing;
 use std::sync::{Mutex, PoisonError};
 
 /// A record that a study names, and its samples once they are read.
@@ -69,7 +72,7 @@ enum Times {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum BadSamples {
     /// Two samples are the least.
-    #[error("it has {0} samples: give at least two")]
+    #[error("it has {0} sample{s}: give at least two", s = if *.0 == 1 { "" } else { "s" })]
     Few(usize),
     /// A value that is none.
     #[error("sample {0}: {1} is not allowed here: give a finite number")]
@@ -80,10 +83,12 @@ pub enum BadSamples {
     /// Times increase.
     #[error("sample {0}: the time {1} s does not come after the time {2} s of the sample before it")]
     Unsorted(usize, f64, f64),
+    /// A slope that is no number.
+    #[error(
+        "sample {0}: it comes only {1:e} s after the sample before it, so that the slope between them is not finite: give times farther apart"
+    )]
+    Close(usize, f64),
 }
-
-/// By how much of their distance samples may be off equal distances and still count as equidistant: what rounding to decimals leaves.
-const EVEN: f64 = 1e-9;
 
 static FILES: Mutex<Vec<&'static RecordFile>> = Mutex::new(Vec::new());
 static TABLES: Mutex<Vec<&'static Table>> = Mutex::new(Vec::new());
@@ -169,10 +174,9 @@ impl Samples {
         if let Some(i) = (1..count).find(|&i| times[i] <= times[i - 1]) {
             return Err(BadSamples::Unsorted(i + 1, times[i], times[i - 1]));
         }
-        let (first, step) = (times[0], (times[count - 1] - times[0]) / (count - 1) as f64);
-        let even =
-            times.iter().enumerate().all(|(i, t)| (t - (first + i as f64 * step)).abs() <= EVEN * step);
-        Self::new(if even { Times::Every(first, step) } else { Times::At(times) }, values)
+        let mut spacing = Spacing::default();
+        let even = times.iter().all(|t| spacing.push(*t)).then(|| spacing.even()).flatten();
+        Self::new(even.map_or(Times::At(times), |[first, step]| Times::Every(first, step)), values)
     }
 
     /// Samples from the time `start` (s) on, `step` (s) apart.
@@ -210,8 +214,14 @@ impl Samples {
         if let Some(i) = (0..count).find(|&i| !self.value(i).is_finite()) {
             return Err(BadSamples::NotFinite(i + 1, self.value(i)));
         }
-        self.bounds[0] = self.values().fold(0.0, |most: f64, value| most.max(value.abs()));
-        self.bounds[1] = (1..count).fold(0.0, |most: f64, i| most.max(self.slope(i - 1).abs()));
+        self.bounds = [self.values().fold(0.0, |most: f64, value| most.max(value.abs())), 0.0];
+        for i in 1..count {
+            let slope = self.slope(i - 1).abs();
+            if !slope.is_finite() {
+                return Err(BadSamples::Close(i + 1, self.time(i) - self.time(i - 1)));
+            }
+            self.bounds[1] = self.bounds[1].max(slope);
+        }
         Ok(self)
     }
 

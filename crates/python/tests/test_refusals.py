@@ -46,6 +46,7 @@ STRUCTURE = rt.Structure(m1=1000, c1=452, k1=3.95e4)
         (lambda p: rt.Problem(STRUCTURE, None, P=1, window=(9, 3)), "window", {"t0": 9, "T": 3}, "the window is empty"),
         (lambda p: rt.Record([0, 1], [1, 2], of="push"), "of", "push", "expected `force` or `base acceleration`"),
         (lambda p: rt.Record([0, 1], [1, 2], of="force", unit="g"), "unit", "g", "give one of N, kN"),
+        (lambda p: rt.Record(None, [1, 2], of="force"), "t", None, "t: None is not allowed here: give real numbers"),
         (lambda p: rt.Record([0, 1, 2], [1, 2], of="force"), "a", None, "one value for each time"),
         (lambda p: rt.Problem(STRUCTURE, record=rt.Record([0, 0], [1, 2], of="force")), "scene.forcing", None, "sample 2: the time 0 s"),
         (lambda p: rt.Problem(STRUCTURE, record=rt.Record(0.1, [1, np.nan], of="force")), "scene.forcing.record.values[1]", None, "give a finite"),

@@ -2,7 +2,7 @@
 
 use super::format::Study;
 use super::rule::Rule;
-use retune_model::{Column, Forcing, Of, Record, RecordFile, Samples, Scene, Unit, unit};
+use retune_model::{Column, Forcing, Of, Record, RecordFile, Samples, Scene, Spacing, Unit, unit};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Cursor, Read, Seek};
 use std::path::Path;
@@ -112,29 +112,58 @@ fn factor(source: &RecordFile, own: Unit) -> f64 {
     size * source.scale.map_or(1.0, |scale| scale.get())
 }
 
-/// CSV: a header, the time in the first column.
+/// CSV: a header, the time in the first column. Times are kept only where they are not equidistant: the file is then read once more.
 fn csv(of: Of, source: &RecordFile, mut file: impl Read + Seek) -> Result<Samples, String> {
     let factor = factor(source, of.units()[0]);
     let mark = separator(&mut file)?;
     let mut table =
-        csv::ReaderBuilder::new().delimiter(mark).flexible(true).trim(csv::Trim::All).from_reader(file);
+        csv::ReaderBuilder::new().delimiter(mark).flexible(true).trim(csv::Trim::Headers).from_reader(file);
     let names = table.headers().map_err(|error| error.to_string())?.clone();
     if names.iter().all(|name| name.parse::<f64>().is_ok()) {
         return Err("line 1: is no header: give the names of its columns, the time first".to_owned());
     }
     let place = column(source.column.as_ref(), &names)?;
-    let (mut times, mut values) = (Vec::new(), Vec::new());
+    let begin = table.position().clone();
+    let (mut spacing, mut values) = (Spacing::default(), Vec::new());
+    let even = rows(&mut table, place, |t, value| {
+        values.push(value);
+        spacing.push(t)
+    })?;
+    let samples = match spacing.even().filter(|_| even) {
+        Some([first, step]) => Samples::every(first, step, values),
+        None => {
+            table.seek(begin).map_err(|error| error.to_string())?;
+            let mut times = Vec::new();
+            values.clear();
+            rows(&mut table, place, |t, value| {
+                times.push(t);
+                values.push(value);
+                true
+            })?;
+            Samples::at(times, values)
+        }
+    };
+    samples.and_then(|samples| samples.times(factor)).map_err(|bad| bad.to_string())
+}
+
+/// Passes on the time and the value of each row, until one is not wanted; whether all are.
+fn rows(
+    table: &mut csv::Reader<impl Read>,
+    place: usize,
+    mut each: impl FnMut(f64, f64) -> bool,
+) -> Result<bool, String> {
     let mut row = csv::StringRecord::new();
     while table.read_record(&mut row).map_err(|error| error.to_string())? {
         let line = row.position().map_or(0, csv::Position::line);
         let at = |place: usize| {
-            let field = row.get(place).ok_or_else(|| format!("line {line}: too few columns"))?;
+            let field = row.get(place).ok_or_else(|| format!("line {line}: too few columns"))?.trim();
             field.parse::<f64>().map_err(|_| format!("line {line}: \"{field}\" is not a number"))
         };
-        times.push(at(0)?);
-        values.push(at(place)?);
+        if !each(at(0)?, at(place)?) {
+            return Ok(false);
+        }
     }
-    Samples::at(times, values).and_then(|samples| samples.times(factor)).map_err(|bad| bad.to_string())
+    Ok(true)
 }
 
 /// What separates the columns of a file, by its first line; the file is then at its beginning again.
@@ -148,6 +177,15 @@ fn separator(file: &mut (impl Read + Seek)) -> Result<u8, String> {
 
 /// The index of the column of the values.
 fn column(wanted: Option<&Column>, names: &csv::StringRecord) -> Result<usize, String> {
+    if let Some(Column::Name(wanted)) = wanted {
+        let same: Vec<String> =
+            (1..).zip(names).filter(|(_, name)| name == wanted).map(|(i, _)| i.to_string()).collect();
+        if let [first, second, ..] = &*same {
+            return Err(format!(
+                "its columns {first} and {second} are both called \"{wanted}\": give the number of the column"
+            ));
+        }
+    }
     let place = match wanted {
         None => Some(1),
         Some(Column::Number(number)) => number.checked_sub(1),
@@ -273,11 +311,12 @@ mod tests {
         let none = serde_json::json!({});
         let column = serde_json::json!({ "column": "c" });
         let first = serde_json::json!({ "column": 1 });
+        let same = serde_json::json!({ "column": "a" });
         let head = "a\nb\nc\nNPTS= 3, DT= .01 SEC\n";
         for (name, text, more, said) in [
             ("a.csv", "", &none, "is empty"),
             ("a.csv", "t,a\n", &none, "it has 0 samples: give at least two"),
-            ("a.csv", "t,a\n0,1\n", &none, "it has 1 samples"),
+            ("a.csv", "t,a\n0,1\n", &none, "it has 1 sample:"),
             ("a.csv", "0,1\n1,2\n", &none, "line 1: is no header"),
             ("a.csv", "t,a\n0,1\n1,x\n", &none, "line 3: \"x\" is not a number"),
             ("a.csv", "t,a\n0,1\n\n1\n", &none, "too few columns"),
@@ -290,6 +329,8 @@ mod tests {
                 "no values in a column \"c\": its columns are 1 \"t\", 2 \"a\"",
             ),
             ("a.csv", "t,a\n0,1\n1,2\n", &first, "no values in a column 1"),
+            ("a.csv", "t,a,a\n0,1,2\n1,2,2\n", &same, "its columns 2 and 3 are both called \"a\""),
+            ("a.csv", "t,a\n0,1\n1e-320,2\n1,2\n", &none, "sample 2: it comes only 1e-320 s after"),
             ("a.csv", "t\n0\n1\n", &none, "no second column"),
             ("a.at2", "1\n2\n3\n4\n5\n", &none, "do not tell NPTS and DT"),
             ("a.at2", &format!("{head}1 2"), &none, "has 2 values, but says NPTS = 3"),

@@ -62,7 +62,7 @@ fn contract_one_kind_of_forcing_and_what_it_needs() {
             r#"{"record":"a.csv","of":"base acceleration","unit":"N"}"#,
             "\"N\" is not allowed here: give one of m/s²",
         ),
-        (r#"{"record":{"step":1,"values":[1]},"of":"force"}"#, "it has 1 samples: give at least two"),
+        (r#"{"record":{"step":1,"values":[1]},"of":"force"}"#, "it has 1 sample: give at least two"),
         (r#"{"record":{"values":[1,2]},"of":"force"}"#, "give one of `step` and `times`"),
         (r#"{"record":{"times":[0],"values":[1,2]},"of":"force"}"#, "2 values for 1 times"),
         (r#"{"record":{"times":[0,0],"values":[1,2]},"of":"force"}"#, "sample 2: the time 0 s does not"),

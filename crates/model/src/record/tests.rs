@@ -21,6 +21,30 @@ fn exact_a_record_is_linear_between_its_samples_and_nothing_outside() {
     }
 }
 
+/// Times are equidistant to a billionth of their distance and to their own rounding, however many there are.
+#[test]
+fn exact_equidistant_times_are_found_as_they_come() {
+    fn even(mut times: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+        let mut spacing = Spacing::default();
+        times.all(|t| spacing.push(t)).then(|| spacing.even()).flatten()
+    }
+    for start in [0, 1_400, 200_000_000] {
+        let [first, step] = even((0..100_000).map(|i| f64::from(start + i) / 200.0)).expect("equidistant");
+        assert!(first == f64::from(start) / 200.0 && (step - 0.005).abs() < 1e-14, "{step}");
+    }
+    for (off, is_even) in [(0.9e-9, true), (1.1e-9, false), (-0.9e-9, true), (-1.1e-9, false)] {
+        for place in [5_u32, 50] {
+            let at = |i: u32| 0.5 * (f64::from(i) + if i == place { off } else { 0.0 });
+            assert_eq!(even((0..100).map(at)).is_some(), is_even, "{off} at {place}");
+        }
+    }
+    for none in
+        [&[] as &[f64], &[1.0], &[0.0, f64::NAN], &[0.0, 1.0, 1.0], &[-1.0, 0.0], &[0.0, f64::INFINITY]]
+    {
+        assert_eq!(even(none.iter().copied()), None, "{none:?}");
+    }
+}
+
 /// The time of every sample finds that sample, whatever rounding does to the division by the distance.
 #[test]
 fn exact_the_time_of_a_sample_begins_its_stretch() {
@@ -68,13 +92,16 @@ fn contract_what_is_no_record_says_why() {
         Samples::at(times.to_vec(), values.to_vec()).expect_err("no record").to_string()
     };
     assert_eq!(refused(&[], &[]), "it has 0 samples: give at least two");
-    assert_eq!(refused(&[0.0], &[1.0]), "it has 1 samples: give at least two");
+    assert_eq!(refused(&[0.0], &[1.0]), "it has 1 sample: give at least two");
     assert!(refused(&[0.0, 1.0], &[1.0, f64::NAN]).starts_with("sample 2: NaN is not allowed"));
     assert!(refused(&[0.0, f64::INFINITY], &[1.0, 1.0]).starts_with("sample 2: inf is not allowed"));
     assert!(refused(&[-1.0, 1.0], &[1.0, 1.0]).starts_with("sample 1: the time -1 s"));
     assert!(refused(&[0.0, 1.0, 1.0], &[1.0, 1.0, 1.0]).starts_with("sample 3: the time 1 s does not"));
     assert!(Samples::every(0.0, 0.0, vec![1.0, 1.0]).is_err());
     assert!(Samples::every(0.0, 0.1, vec![]).is_err());
+    let close = refused(&[0.0, 1e-320, 1.0], &[0.0, 1.0, 1.0]);
+    assert!(close.starts_with("sample 2: it comes only 1e-320 s after the sample before it"), "{close}");
+    assert!(Samples::every(0.0, 1e-320, vec![1.0, 2.0]).is_err());
     let endless = Samples::every(0.0, 1e308, vec![1.0; 3]).expect_err("no record").to_string();
     assert!(endless.starts_with("sample 3: inf is not allowed"), "{endless}");
 }

@@ -52,6 +52,8 @@ def pair(values: Any, name: str) -> tuple[Any, Any]:
 
 def floats(values: Any, name: str) -> NDArray[np.float64]:
     """The numbers of any array, list or scalar, 64-bit, aligned, in C order."""
+    if values is None:
+        raise StudyError(f"{name}: None is not allowed here: give real numbers", name)
     try:
         array = np.asarray(values)
         if array.dtype.kind not in "biufO":
