@@ -14,7 +14,7 @@ pub fn column(name: &str) -> Column {
     let is_it = |(known, _): &(&str, &'static str)| {
         name.strip_prefix(known).is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
     };
-    let known = parameters.into_iter().chain(measures).chain(STATE).find(is_it);
+    let known = parameters.into_iter().chain(measures).chain(STATE).chain([("decay_time", "s")]).find(is_it);
     Column::new(name, known.map_or("", |(_, unit)| unit))
 }
 
@@ -46,10 +46,20 @@ mod tests {
 
     #[test]
     fn contract_units_are_those_of_the_catalogue() {
-        let names =
-            ["k2", "k2_most", "E1", "E1max", "E1max_none", "contact_force", "omega_worst", "v1", "place"];
+        let names = [
+            "k2",
+            "k2_most",
+            "E1",
+            "E1max",
+            "E1max_none",
+            "contact_force",
+            "omega_worst",
+            "v1",
+            "decay_time",
+            "place",
+        ];
         let table = table(&names);
         let units: Vec<&str> = table.columns.iter().map(|column| &*column.unit).collect();
-        assert_eq!(units, ["N/m", "N/m", "N/m²", "J", "J", "N", "rad/s", "m/s", ""]);
+        assert_eq!(units, ["N/m", "N/m", "N/m²", "J", "J", "N", "rad/s", "m/s", "s", ""]);
     }
 }

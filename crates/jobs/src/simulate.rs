@@ -4,7 +4,7 @@ use crate::Error;
 use crate::contacts::{Contacts, Powers};
 use crate::summary::Summary;
 use retune_model::{Measure, Rms, Stationary};
-use retune_solver::{Rows, Sample, trajectory};
+use retune_solver::{LEFT, Rows, Sample, decay_time, trajectory};
 use retune_store::{Pending, order::may_write};
 use retune_study::{Study, hertz_and_rpm};
 use serde::Serialize;
@@ -38,6 +38,7 @@ pub fn simulate(study: &Study, trajectory: Option<Trajectory>) -> Result<Simulat
     let response = retune_solver::simulate(&study.scene, window, &settings)?;
     let losses = retune_solver::losses(&study.scene, window, &settings)?;
     let contacts = Contacts::of(&study.scene, window, &settings)?;
+    let decay_time = decay_time(&study.scene, window.to, &settings)?;
     if let Some(Trajectory { file, interval, .. }) = trajectory {
         write_trajectory(study, file, interval)?;
     }
@@ -53,6 +54,7 @@ pub fn simulate(study: &Study, trajectory: Option<Trajectory>) -> Result<Simulat
         hertz,
         rpm,
         transmissibility,
+        decay_time,
         contacts,
         powers,
         warnings,
@@ -74,6 +76,9 @@ pub struct Simulation {
     rpm: f64,
     /// As [`Summary::transmissibility`].
     transmissibility: Option<f64>,
+    /// As [`retune_solver::decay_time`]; null if that is not within the run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    decay_time: Option<f64>,
     /// What the contacts are like; null if no wall is touched.
     contacts: Option<Contacts>,
     /// Where the energy goes, W.
@@ -117,6 +122,17 @@ impl Serialize for Means {
 impl std::fmt::Display for Simulation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         self.summary.fmt(f)?;
+        if let Some(time) = self.decay_time {
+            let level = format!("{} % of its largest value in the run", 100.0 * LEFT);
+            if time.is_finite() {
+                write!(
+                    f,
+                    "\ndecay       {time:<12.7} s from the end of the forcing until E1 stays below {level}"
+                )?;
+            } else {
+                write!(f, "\ndecay       not within the run: at its end E1 exceeds {level}")?;
+            }
+        }
         for words in self.contacts.iter().flat_map(Contacts::words) {
             write!(f, "\ncontacts    {words}")?;
         }

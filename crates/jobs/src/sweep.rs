@@ -61,8 +61,8 @@ pub static KIND: Kind = Kind {
     derived: &[JSON, "sweep.txt", "sweep.svg"],
 };
 
-// A journal must hold every sweep; no point has more than 16 numbers.
-const _: () = assert!(16 * plan::MOST_POINTS <= retune_store::MOST_POINTS);
+// A journal must hold every sweep; no point has more than 17 numbers.
+const _: () = assert!(17 * plan::MOST_POINTS <= retune_store::MOST_POINTS);
 
 /// What becomes of the points of a sweep.
 #[derive(Clone, Debug, Default)]

@@ -40,6 +40,7 @@
 mod budget;
 mod collisions;
 mod contact;
+mod decay;
 mod derivatives;
 mod energy_bound;
 mod error;
@@ -63,6 +64,7 @@ mod trajectory;
 
 pub use budget::{Budget, Pace};
 pub use collisions::{Collisions, collisions};
+pub use decay::{LEFT, decay_time, last_above};
 pub use derivatives::{extremes_by, settled_by};
 pub use error::{Remedy, SolverError};
 pub use extremes::{Also, Ask, Extremes, extremes};

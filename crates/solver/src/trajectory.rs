@@ -1,15 +1,13 @@
 //! A motion as rows: at equal intervals, and at the moments that lie between them.
 
-mod falls;
-
 use crate::error::SolverError;
 use crate::motion::knot::Knot;
 use crate::motion::segment::Segment;
+use crate::observe::falls::falls;
 use crate::observe::observer::{Impact, Observer, Unobserved};
 use crate::plan::{Plan, Request};
 use crate::run::Follow;
 use crate::settings::{Settings, Window};
-use falls::falls;
 use retune_model::{Bare, Coupled, Scene, Side};
 
 /// Why a moment of the motion is recorded.

@@ -118,6 +118,8 @@ pub enum Quantity {
     Largest(Measure),
     /// The transmissibility, see [`retune_model::Forcing::transmissibility`].
     Transmissibility,
+    /// The time that the motion after a pulse or a record takes to decay, see [`retune_solver::decay_time`]. No harmonic motion has it.
+    DecayTime,
     /// Impacts in the window, on both walls together.
     Impacts,
 }
@@ -125,7 +127,11 @@ pub enum Quantity {
 impl Quantity {
     /// All of them.
     pub fn all() -> impl Iterator<Item = Self> {
-        Measure::ALL.into_iter().map(Self::Largest).chain([Self::Transmissibility, Self::Impacts])
+        Measure::ALL.into_iter().map(Self::Largest).chain([
+            Self::Transmissibility,
+            Self::DecayTime,
+            Self::Impacts,
+        ])
     }
 
     /// Its name on the command line and in tables.
@@ -133,6 +139,7 @@ impl Quantity {
         match self {
             Self::Largest(measure) => measure.name(),
             Self::Transmissibility => "transmissibility",
+            Self::DecayTime => "decay_time",
             Self::Impacts => "impacts",
         }
     }
@@ -141,6 +148,7 @@ impl Quantity {
     pub const fn unit(self) -> &'static str {
         match self {
             Self::Largest(measure) => measure.unit(),
+            Self::DecayTime => "s",
             Self::Transmissibility | Self::Impacts => "",
         }
     }

@@ -3,11 +3,11 @@
 use crate::Error;
 use crate::columns::column;
 use crate::rows::Rows;
-use crate::sweep::plan::Plan;
+use crate::sweep::plan::{Plan, Quantity};
 use retune_model::{Measure, Parameter, Scene};
 use retune_optim::{Axis, Goal, Limits, Objective};
 use retune_report::table::{Cell, Column, Table};
-use retune_solver::simulate;
+use retune_solver::{SolverError, decay_time, simulate};
 use retune_study::{Rule, Setting, Study, hertz_and_rpm};
 
 /// What is swept, with the study that it is swept in.
@@ -26,8 +26,8 @@ impl Rows for Sweep {
     fn width(&self) -> usize {
         match (self.plan.objective, self.study.scene.damper) {
             (true, _) => OBJECTIVE,
-            (false, Some(_)) => DAMPED + BARE,
-            (false, None) => BARE,
+            (false, Some(_)) => self.of_structure() + OF_DAMPER + self.of_structure(),
+            (false, None) => self.of_structure(),
         }
     }
 
@@ -36,10 +36,8 @@ impl Rows for Sweep {
     }
 }
 
-/// Numbers of a run of the structure alone: its largest values. With a damper, those of the damper and its impacts follow.
-const BARE: usize = Measure::OF_STRUCTURE.len();
-/// Numbers of a run with a damper.
-const DAMPED: usize = BARE + Measure::OF_DAMPER.len() + 2;
+/// Numbers of the damper in a run: its largest values, and its impacts.
+const OF_DAMPER: usize = Measure::OF_DAMPER.len() + 2;
 /// Numbers of an objective: its value, the frequency of its worst run, the violation of the limits, and its value without a damper.
 const OBJECTIVE: usize = 4;
 
@@ -104,30 +102,43 @@ impl Sweep {
         (numbers, reason)
     }
 
+    /// Whether its runs have a decay time, in the place of a transmissibility.
+    fn decays(&self) -> bool {
+        self.study.scene.forcing.is_transient()
+    }
+
+    /// How many numbers of a run are of the structure: its largest values, and the time of its decay if it has one.
+    fn of_structure(&self) -> usize {
+        Measure::OF_STRUCTURE.len() + usize::from(self.decays())
+    }
+
     fn runs(&self, scene: &Scene) -> (Vec<f64>, Option<String>) {
-        let (window, settings) = (self.study.window.window(), self.study.solver.settings());
-        let mut numbers = Vec::with_capacity(self.width());
-        let mut reason = None;
-        if scene.damper.is_some() {
-            match simulate(scene, window, &settings) {
-                Ok(run) => {
-                    numbers.extend(Measure::ALL.map(|measure| run.largest(measure)));
-                    numbers.extend(run.impacts.map(|count| count as f64));
-                }
-                Err(error) => {
-                    numbers.resize(DAMPED, f64::INFINITY);
-                    reason = Some(error.to_string());
-                }
-            }
-        }
-        match simulate(&Scene { damper: None, ..*scene }, window, &settings) {
-            Ok(run) => numbers.extend(Measure::OF_STRUCTURE.map(|measure| run.largest(measure))),
-            Err(error) => {
-                numbers.resize(self.width(), f64::INFINITY);
+        let bare = Scene { damper: None, ..*scene };
+        let scenes = scene.damper.map(|_| *scene).into_iter().chain([bare]);
+        let (mut numbers, mut reason) = (Vec::with_capacity(self.width()), None);
+        for scene in scenes {
+            let before = numbers.len();
+            if let Err(error) = self.run(&scene, &mut numbers) {
+                let of_damper = if scene.damper.is_some() { OF_DAMPER } else { 0 };
+                numbers.resize(before + self.of_structure() + of_damper, f64::INFINITY);
                 reason = reason.or_else(|| Some(error.to_string()));
             }
         }
         (numbers, reason)
+    }
+
+    /// The numbers of a run: of the structure, then of the damper if there is one.
+    fn run(&self, scene: &Scene, numbers: &mut Vec<f64>) -> Result<(), SolverError> {
+        let (window, settings) = (self.study.window.window(), self.study.solver.settings());
+        let run = simulate(scene, window, &settings)?;
+        let decay = if self.decays() { decay_time(scene, window.to, &settings)? } else { None };
+        numbers.extend(Measure::OF_STRUCTURE.map(|measure| run.largest(measure)));
+        numbers.extend(self.decays().then(|| decay.unwrap_or(f64::INFINITY)));
+        if scene.damper.is_some() {
+            numbers.extend(Measure::OF_DAMPER.map(|measure| run.largest(measure)));
+            numbers.extend(run.impacts.map(|count| count as f64));
+        }
+        Ok(())
     }
 
     fn objective(&self, scene: &Scene) -> (Vec<f64>, Option<String>) {
@@ -156,7 +167,8 @@ impl Sweep {
             columns.extend([name, "omega_worst", "violation", &format!("{name}_none")].map(column));
             return columns;
         }
-        let structure = || Measure::OF_STRUCTURE.map(Measure::name).into_iter().chain(["transmissibility"]);
+        let last = if self.decays() { Quantity::DecayTime } else { Quantity::Transmissibility };
+        let structure = || Measure::OF_STRUCTURE.map(Measure::name).into_iter().chain([last.name()]);
         columns.extend(structure().map(column));
         if self.study.scene.damper.is_some() {
             columns.extend(Measure::OF_DAMPER.map(Measure::name).map(column));
@@ -179,6 +191,9 @@ impl Sweep {
         let scene = self.study.scene_with(&[Setting::new(self.plan.over, value)]);
         let structure = |row: &mut Vec<f64>, numbers: &[f64]| {
             row.extend(numbers);
+            if self.decays() {
+                return;
+            }
             let of = |measure| {
                 Measure::OF_STRUCTURE.iter().position(|other| *other == measure).map(|i| numbers[i])
             };
@@ -188,15 +203,13 @@ impl Sweep {
                 share.map_or(f64::NAN, |(scene, (x1, force))| scene.forcing.transmissibility(x1, force)),
             );
         };
-        match numbers.split_at_checked(DAMPED) {
-            Some((damped, bare)) if self.study.scene.damper.is_some() => {
-                structure(&mut row, &damped[..BARE]);
-                row.extend(&damped[BARE..DAMPED - 2]);
-                let [one, other] = [damped[DAMPED - 2], damped[DAMPED - 1]];
-                row.extend([one + other, one, other]);
-                structure(&mut row, bare);
-            }
-            _ => structure(&mut row, numbers),
+        let (first, others) = numbers.split_at(self.of_structure());
+        structure(&mut row, first);
+        if let Some((damper, bare)) = others.split_at_checked(OF_DAMPER) {
+            let (largest, impacts) = damper.split_at(Measure::OF_DAMPER.len());
+            row.extend(largest);
+            row.extend([impacts[0] + impacts[1], impacts[0], impacts[1]]);
+            structure(&mut row, bare);
         }
         row
     }

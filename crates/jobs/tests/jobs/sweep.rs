@@ -5,9 +5,12 @@ use retune_jobs::sweep::Options;
 use retune_jobs::sweep::{Points, sweep};
 use retune_jobs::verify::verify;
 use retune_jobs::{Error, Observer, Request, Silent};
-use retune_model::Parameter;
+use retune_model::{Parameter, Scene};
+use retune_solver::decay_time;
+use retune_study::Study;
 use retune_testkit::desk::{Desk, count_lines, tiny};
 use retune_testkit::observers::{Record, cut_off, good, refused};
+use serde_json::json;
 
 /// A sweep of seven frequencies about resonance.
 fn options() -> Options {
@@ -47,6 +50,41 @@ fn contract_a_sweep_writes_table_figure_and_words() {
     let (text, svg) = (desk.read("whole/sweep.txt"), desk.read("whole/sweep.svg"));
     assert!(text.contains("E1max: largest ") && text.contains("without a damper largest "), "{text}");
     assert!(svg.contains("frequency, Hz") && svg.contains("stroke, m") && svg.contains("no damper"), "{svg}");
+}
+
+/// In the place of a transmissibility, which only harmonic motions have; missing where the run is too short for it.
+#[test]
+fn contract_a_sweep_after_a_pulse_has_the_decay_time() {
+    let mut study = tiny();
+    study["scene"]["forcing"] = json!({ "pulse": "half sine", "of": "force", "peak": 9000, "duration": 0.2 });
+    (study["window"], study["optimize"]) = (json!({ "t0": 0, "T": 9 }), json!(null));
+    let desk = Desk::with(&study);
+    let over = Parameter::C1;
+    let quantities = vec!["decay_time".parse().expect("a quantity")];
+    let options =
+        Options { from: "5".into(), to: "3000".into(), points: 2, quantities, ..Options::over(over) };
+    good(sweep(&request(&desk, "study.json", "out"), &options, &Points::All, &Silent));
+    let rows = desk.rows("out/sweep.csv");
+    assert_eq!(rows[0][5..10].join(","), "ground_force,decay_time,stroke,contact_force,contact_pressure");
+    assert_eq!(rows[0].last().map(String::as_str), Some("decay_time_none"));
+    assert_eq!((rows[1].last().map(String::as_str), rows[1].len()), (Some(""), rows[0].len()));
+    let read = retune_study::read(&desk.path("study.json")).expect("a study");
+    let damped = read.scene_with(&["c1=3000".parse().expect("a setting")]).expect("a scene");
+    for (scene, found) in
+        [(damped, &rows[2][6]), (Scene { damper: None, ..damped }, rows[2].last().expect("a column"))]
+    {
+        let expected = decay_time(&scene, 9.0, &read.solver.settings()).expect("a run");
+        assert!(
+            expected.is_some_and(f64::is_finite) && found.parse().ok() == expected,
+            "{found} {expected:?}"
+        );
+    }
+    assert_eq!(desk.read_json("out/sweep.json")["units"]["decay_time"], "s");
+    assert!(desk.read("out/sweep.txt").contains("decay_time"));
+    good(verify(&desk.path("out"), 2, 0.0, &Silent));
+    // What `simulate` says of the same run.
+    let simulated = json!(good(retune_jobs::simulate::simulate(&Study { scene: damped, ..read }, None)));
+    assert_eq!(simulated["decay_time"].as_f64(), rows[2][6].parse().ok());
 }
 
 #[test]

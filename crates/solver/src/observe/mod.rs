@@ -5,18 +5,19 @@
 //! proof `search` and `quintic`. `structure` has the quantities of the structure's motion, `magnitude` the largest size of a quantity
 //! of either sign. `counters` see events alone; `displacement_range` gives stroke and contact forces, `contact_forces` those of
 //! walls that lose energy; `largest_values` has any of the
-//! measures, `since` a part of a run.
+//! measures, `since` a part of a run. `falls` finds where a rate falls through zero.
 
 pub mod contact_forces;
 pub mod counters;
 pub mod displacement_range;
+pub(crate) mod falls;
 pub mod largest_values;
 pub mod magnitude;
 pub mod observer;
 pub mod quantity;
 mod quintic;
 pub mod running_maximum;
-mod search;
+pub(crate) mod search;
 pub mod since;
 pub mod structure;
 

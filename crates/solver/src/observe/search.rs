@@ -81,6 +81,11 @@ fn says_little<const N: usize>(remainder: f64, highest: f64, a: &Place<N>, b: &P
 }
 
 impl<Q> Search<Q> {
+    /// Looks from now on for values above this one.
+    pub fn restart(&mut self, record: Extreme) {
+        (self.record, self.undecided) = (record, f64::NEG_INFINITY);
+    }
+
     /// Keeps a value if it is the largest so far.
     #[inline]
     pub fn note(&mut self, value: f64, time: f64) {

@@ -5,6 +5,7 @@ mod bounds;
 mod bounds_in_flight;
 mod collisions;
 mod dashpots;
+mod decay;
 mod derivatives;
 mod edge;
 mod exact;
