@@ -75,7 +75,7 @@ def main():
             lines.append(f"{place} not proven: {found} | | | | |")
             continue
         stability, known, own = found
-        unstable += not isinstance(stability, dict)
+        unstable += "stable" not in stability
         offs.append(own)
         widths.append(known[1] - known[0])
         numbers = " | ".join(most(x) for x in [widths[-1], *own])

@@ -103,8 +103,8 @@ impl fmt::Display for Proof {
         writeln!(f, "alone         no other {other}; it is within {:.1e} (m, m/s, rad)", 1.05 * width)?;
         match stability {
             Stability::Stable(bound) => writeln!(f, "stable        all multipliers are below {bound}")?,
-            Stability::Unstable => writeln!(f, "unstable      a multiplier is above 1")?,
-            Stability::Open => writeln!(f, "stability     neither stable nor unstable is proven")?,
+            Stability::Unstable(largest) => writeln!(f, "unstable      a multiplier is above 1: {largest}")?,
+            Stability::Open(largest) => writeln!(f, "stability     neither way is proven: {largest}")?,
         }
         let lines = largest.all().map(|(measure, value)| {
             format!("{:<14}from {} to {} {}", measure.name(), value.lo(), value.hi(), measure.unit())
@@ -177,8 +177,11 @@ impl fmt::Display for BandProof {
             "study {study}, omega from {from} to {to} rad/s: proven by interval arithmetic in {pieces}"
         )?;
         write!(f, "every omega   has a stable motion with an E1max of at most {} J", energy.hi())?;
-        for LeftOut { omega: [from, to], why } in &band.left_out {
+        for LeftOut { omega: [from, to], why, from_above } in &band.left_out {
             write!(f, "\nbut for       {from} to {to} rad/s: {why}")?;
+            if let Some(why) = from_above {
+                write!(f, "; from above, {why}")?;
+            }
         }
         Ok(())
     }

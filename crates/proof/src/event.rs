@@ -2,6 +2,8 @@
 
 use crate::number::FREE;
 use retune_model::Side;
+use serde::Serialize;
+use std::fmt;
 
 /// What happens to a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,12 +51,31 @@ impl Event {
             Self::Touch(Side::Obstacle) => "touches the obstacle",
             Self::Leave(Side::Primary) => "leaves the structure",
             Self::Leave(Side::Obstacle) => "leaves the obstacle",
-            Self::Pull => "loses the force of a contact",
+            Self::Pull => "loses the force of a contact before its end, at 1 + lambda dz/dt = 0",
         }
     }
 }
 
-/// Why something was not proven: it may be true all the same.
+/// A multiplier in doubles, at the middles of derivatives, of which nothing is proven; without the sign of its imaginary part.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Multiplier {
+    /// Real part.
+    pub re: f64,
+    /// Imaginary part.
+    pub im: f64,
+    /// The largest width of the derivatives of the segments.
+    pub derivatives: f64,
+}
+
+impl fmt::Display for Multiplier {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { re, im, derivatives } = self;
+        let pair = if *im == 0.0 { String::new() } else { format!(" ± {im:.6}i") };
+        write!(f, "the largest multiplier is about {re:.6}{pair}, by derivatives {derivatives:.1e} wide")
+    }
+}
+
+/// Why something was not proven, in which step, and at which width there (in m, m/s or rad): it may be true all the same.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Failure {
     /// The proof does not cover such scenes.
@@ -62,43 +83,51 @@ pub enum Failure {
         "{0}: nothing is proven of such scenes; give damping, a periodic forcing, and Hertz's surfaces or no walls"
     )]
     Scene(&'static str),
-    /// A motion comes to a wall, or to the end of a contact, so slowly that it may as well not come there.
-    #[error("cannot be proven here: the motion grazes, that is, it is open whether it {}", .0.name())]
-    Graze(Event),
-    /// A contact may lose so much that its force ends before it.
-    #[error(
-        "cannot be proven here: the force of a contact may end, at 1 + lambda dz/dt = 0, before the contact does"
-    )]
-    Pulls,
+    /// No closed form: without force the system may not come to rest.
+    #[error("in closed form: no dashpot is proven to bring the system to rest")]
+    Undamped,
+    /// A motion comes to a wall, to the end of a contact, or to that of its force so slowly that it may as well not come there, from a box of this width.
+    #[error("at an event: a graze: it is open whether the motion {name}; its box is {1:.1e} wide", name = .0.name())]
+    Graze(Event, f64),
     /// No box was found that the motions stay in during a step of this length, from a box of this width.
-    #[error(
-        "cannot be proven here: no step of {0:e} s (in a contact s/√m) from a box of the width {1:e} could be enclosed"
-    )]
+    #[error("in a step of {0:.1e} s (in a contact s/√m): no enclosure is found; its box is {1:.1e} wide")]
     Step(f64, f64),
-    /// A segment does not end within so many steps.
-    #[error("cannot be proven here: no next impact, end of a contact or crest of the force within {0} steps")]
-    Endless(usize),
+    /// A segment does not end within so many steps; its box then has this width.
+    #[error("in a segment: no impact, lift-off or crest within {0} steps; its box is {1:.1e} wide")]
+    Endless(usize, f64),
     /// The guess does not repeat after so many periods of the force: so far it is off.
-    #[error(
-        "the guess is refused: after {0} periods of the force it is {1:e} (m, m/s or rad) from where it began, and Newton's iteration does not close that"
-    )]
+    #[error("the guess is refused: after {0} periods of the force it is {1:.1e} (m, m/s or rad) off")]
     Guess(usize, f64),
-    /// The sequence of events of a guess changed while it was improved.
-    #[error("cannot be proven here: the sequence of impacts is another one from one iteration to the next")]
-    Sequence,
+    /// The sequence of events of a motion becomes another one by a change of it of this size.
+    #[error("by Newton's iteration: the sequence of impacts becomes another one by a change of {0:.1e}")]
+    Sequence(f64),
     /// Krawczyk's operator maps no box into itself: the width of the last box, and of what became of it.
-    #[error(
-        "cannot be proven here: Krawczyk's operator maps no box about the motion into itself; the last one was {0:e} wide (m, m/s or rad) and became {1:e} wide"
-    )]
+    #[error("by Krawczyk's operator: no box is mapped into itself: one {0:.1e} wide becomes {1:.1e} wide")]
     Krawczyk(f64, f64),
     /// A motion that is to be stable was not proven to be.
-    #[error("the motion is not proven to be stable")]
-    NotStable,
+    #[error("the motion is not proven to be stable: {0}")]
+    NotStable(Multiplier),
 }
 
-impl Failure {
-    /// That motions may come to an event, or not.
-    pub(crate) fn open(event: Event) -> Self {
-        if event == Event::Pull { Self::Pulls } else { Self::Graze(event) }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contract_a_failure_says_its_step_and_the_width_there() {
+        let w = 1.5e-9;
+        let multiplier = Multiplier { re: -0.99, im: 0.0, derivatives: w };
+        for (failure, step) in [
+            (Failure::Graze(Event::Touch(Side::Primary), w), "at an event"),
+            (Failure::Step(1e-3, w), "in a step"),
+            (Failure::Endless(9, w), "in a segment"),
+            (Failure::Guess(2, w), "the guess is refused"),
+            (Failure::Sequence(w), "by Newton's iteration"),
+            (Failure::Krawczyk(w, 2.0), "by Krawczyk's operator"),
+            (Failure::NotStable(multiplier), "the motion is not proven to be stable"),
+        ] {
+            let words = failure.to_string();
+            assert!(words.starts_with(step) && words.contains("1.5e-9"), "{words}");
+        }
     }
 }

@@ -7,12 +7,13 @@ use crate::segment::Passage;
 use crate::step::Quantity;
 use crate::{Equations, Interval, Number};
 use retune_model::Measure;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 /// Largest values.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct Largest {
     /// E1max, J.
+    #[serde(rename = "E1max")]
     pub energy: Interval,
     /// Largest stretch of the damper's spring, m.
     pub stroke: Interval,
@@ -28,12 +29,6 @@ impl Largest {
             (Measure::Stroke, self.stroke),
             (Measure::ContactForce, self.contact_force),
         ]
-    }
-}
-
-impl Serialize for Largest {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.all().map(|(measure, value)| (measure.name(), value)))
     }
 }
 

@@ -42,7 +42,7 @@ use equations::Equations;
 use taylor::{Number, Taylor};
 
 pub use elementary::cos_sin;
-pub use event::{Event, Failure};
+pub use event::{Event, Failure, Multiplier};
 pub use interval::Interval;
 pub use largest::Largest;
 pub use orbit::Guess;

@@ -29,10 +29,9 @@ impl Factor {
             _ if loss.is_none() => Ok(Self::None),
             Loss::Damping(lambda) => Ok(Self::Damping(Interval::decimal(lambda.get()))),
             Loss::Restoring(e) if e.get() < LEAST => Err(Failure::Scene("a restitution below 0.2")),
-            Loss::Restoring(e) => {
-                let chi = chi(Interval::decimal(e.get())).ok_or(Failure::Scene("a restitution next to 1"))?;
-                Ok(Self::Restoring(chi))
-            }
+            Loss::Restoring(e) => chi(Interval::decimal(e.get()))
+                .map(Self::Restoring)
+                .ok_or(Failure::Scene("a restitution next to 1")),
         }
     }
 }

@@ -18,6 +18,11 @@ pub type State = [Interval; STATE];
 /// Functions of the parameter of a family, one for each coordinate.
 pub type Family = [Taylor; STATE];
 
+/// The largest width.
+pub fn width(boxes: &[Interval]) -> f64 {
+    boxes.iter().map(|x| x.width()).fold(0.0, f64::max)
+}
+
 /// A quantity with its derivatives by the coordinates.
 #[derive(Clone, Copy, Debug)]
 pub struct Gradient<T> {

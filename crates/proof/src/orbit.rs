@@ -85,7 +85,7 @@ impl Orbit {
             },
         };
         let mut orbit = Self { periods, nodes: vec![first], plans: Vec::new(), turns: Vec::new() };
-        while orbit.nodes.len() < EVENTS {
+        loop {
             let k = orbit.plans.len();
             let next = plan(equations, &orbit.nodes[k], orbit.crest(k))?;
             let mut reached = Node { event: next.end.event, state: next.reached };
@@ -96,15 +96,14 @@ impl Orbit {
                 orbit.turns.push(left);
                 return Ok(orbit);
             }
-            if past > BACK {
-                return Err(Failure::Sequence);
+            if past > BACK || orbit.nodes.len() == EVENTS {
+                return Err(Failure::Guess(periods, past.abs()));
             }
             let turns = ((reached.state[4].mid() / TAU).floor().max(0.0) as usize).min(left);
             reached.state[4] = (reached.state[4] - Taylor::from(turn(turns))).polynomial();
             orbit.turns.push(turns);
             orbit.nodes.push(reached);
         }
-        Err(Failure::Endless(EVENTS))
     }
 
     /// The unknowns.
@@ -174,15 +173,15 @@ impl Orbit {
         self.with(self.unknowns().zip(change).map(|(x, change)| x - *change))
     }
 
-    /// With the ways planned anew.
+    /// With the ways planned anew, after a change of the unknowns by so much.
     ///
     /// # Errors
     /// See [`plan`]; or its sequence of events becomes another one.
-    fn planned(self, equations: &Equations) -> Result<Self, Failure> {
+    fn planned(self, equations: &Equations, change: f64) -> Result<Self, Failure> {
         let plans = self.nodes.iter().enumerate().map(|(k, node)| plan(equations, node, self.crest(k)));
         let plans = plans.collect::<Result<Vec<_>, _>>()?;
         let same = plans.iter().zip(&self.plans).all(|(new, old)| new.end.event == old.end.event);
-        if same { Ok(Self { plans, ..self }) } else { Err(Failure::Sequence) }
+        if same { Ok(Self { plans, ..self }) } else { Err(Failure::Sequence(change)) }
     }
 
     /// The motion of a family at a value of its parameter, to rounding.
@@ -190,7 +189,8 @@ impl Orbit {
     /// # Errors
     /// Its events are others there.
     pub fn member(&self, equations: &Equations, s: f64) -> Result<Self, Failure> {
-        self.with(self.unknowns().map(|x| Taylor::point(x.near(s)))).planned(equations)
+        let change = self.unknowns().map(|x| x.near(s) - x.mid()).fold(0.0, |most, x| x.abs().max(most));
+        self.with(self.unknowns().map(|x| Taylor::point(x.near(s)))).planned(equations, change)
     }
 
     /// The family of motions through this one for the frequencies of the equations, by Newton's iteration on polynomials, each of which
@@ -224,7 +224,7 @@ impl Orbit {
                 break;
             }
             last = size;
-            own = own.orbit.less(&change).planned(equations)?.closed(equations)?;
+            own = own.orbit.less(&change).planned(equations, size)?.closed(equations)?;
         }
         Err(Failure::Guess(own.orbit.periods, largest(&own.known.gaps)))
     }

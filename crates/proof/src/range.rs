@@ -95,8 +95,8 @@ impl Range {
         let inner = lower(middle).max(ends);
         let bound = if slope.is_positive() || slope.is_negative() { ends } else { self.over([a, b]).hi() };
         let sharp = SHARP[0] * bound.abs() + SHARP[1] * width;
-        let done = bound <= most.hi() || bound - inner <= sharp || depth == 0;
-        if done || slope.is_positive() || slope.is_negative() {
+        // Where the slope has one sign the bound is the value at an end.
+        if bound <= most.hi() || bound - inner <= sharp || depth == 0 {
             *most = most.max(Interval::new(most.lo(), bound.max(most.lo())));
         } else {
             self.raise_in([a, middle], most, sure, depth - 1);

@@ -143,14 +143,14 @@ fn plan_from(flow: Flow<'_>, mut states: States, crest: Option<Interval>) -> Res
             let last = Taylor::point(share * taken);
             let near = step(flow, &states, last, ORDER).filter(|_| end.event != Event::Pull);
             let crossing = near.and_then(|(near, _)| cross(flow, &near, end));
-            let centre = crossing.ok_or(Failure::open(end.event))?.centre;
+            let centre = crossing.ok_or(Failure::Graze(end.event, states.width()))?.centre;
             steps.push(last);
             return Ok(Plan { steps, end: *end, reached: in_flight(flow, centre).map(Taylor::polynomial) });
         }
         (states, h) = (next, (1.5 * taken).min(GREATEST));
         steps.push(Taylor::point(taken));
     }
-    Err(Failure::Endless(STEPS))
+    Err(Failure::Endless(STEPS, states.width()))
 }
 
 /// The same steps for a family: all longer or shorter by one share, so that the last one ends at the event for all values of the parameter, to the order that the
@@ -183,7 +183,7 @@ fn sharp_step(flow: Flow<'_>, states: &States, longest: f64) -> Result<(States, 
             _ => h *= 0.75,
         }
     }
-    Err(too_wide(LEAST, states))
+    Err(Failure::Step(LEAST, states.width()))
 }
 
 /// A state at the end of a segment in the coordinates of a flight.
@@ -205,24 +205,25 @@ pub fn follow(equations: &Equations, node: &Node, away: &[Interval], way: &Plan)
     let (mut states, mut pieces) = (first(equations, node, away), Vec::with_capacity(steps.len()));
     let sections = sections(flow, None);
     for (k, &h) in steps.iter().enumerate() {
-        let (next, piece) = step(flow, &states, h, ORDER).ok_or_else(|| too_wide(h.mid(), &states))?;
+        let (next, piece) =
+            step(flow, &states, h, ORDER).ok_or_else(|| Failure::Step(h.mid(), states.width()))?;
         for section in &sections {
             // A wall that a motion leaves, or the end of the contact that begins.
             let starts = k == 0 && section.event.is_beside(node.event);
             let ends = k + 1 == steps.len() && section.event == end.event;
             if !Range::new(piece.series_of(section)).is_positive(starts, ends) {
-                return Err(Failure::open(section.event));
+                return Err(Failure::Graze(section.event, states.width()));
             }
         }
         pieces.push(piece);
         states = next;
     }
-    let crossing = cross(flow, &states, end).ok_or(Failure::open(end.event))?;
+    let crossing = cross(flow, &states, end).ok_or_else(|| Failure::Graze(end.event, states.width()))?;
     // What it does not end at is not reached about the end either.
     for section in sections.iter().filter(|section| section.event != end.event) {
         let left = section.value - crossing.near[section.event.fixed()].hull();
         if !section.is_towards(left) {
-            return Err(Failure::open(section.event));
+            return Err(Failure::Graze(section.event, states.width()));
         }
     }
     // From a contact with the structure or to its end the speed changes its sign.
@@ -236,10 +237,6 @@ pub fn follow(equations: &Equations, node: &Node, away: &[Interval], way: &Plan)
         near: crossing.near,
         delay: crossing.delay / steps.last().map_or(Interval::ONE, |h| h.hull()),
     })
-}
-
-fn too_wide(least: f64, states: &States) -> Failure {
-    Failure::Step(least, states.all().iter().map(|x| x.hull().width()).fold(0.0, f64::max))
 }
 
 /// Where the rest of a contact ends that has come to a state `[q, w, x1, v1, φ, 0]`.
@@ -278,7 +275,10 @@ mod tests {
                     Ok(passage) => {
                         assert!(is_free && (passage.delay.mid() - 14.924).abs() < 1e-3, "{side:?}")
                     }
-                    Err(why) => assert!(!is_free && why == Failure::Graze(Event::Touch(side)), "{why}"),
+                    Err(Failure::Graze(event, width)) => {
+                        assert!(!is_free && event == Event::Touch(side) && width < 1e-14, "{width:e}");
+                    }
+                    Err(why) => panic!("{why}"),
                 }
             }
         }

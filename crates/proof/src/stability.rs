@@ -2,8 +2,8 @@
 
 use crate::number::{Block, FREE, matrix, times};
 use crate::segment::Passage;
-use crate::{Failure, Interval, Taylor};
-use nalgebra::{Matrix4, SMatrix};
+use crate::{Failure, Interval, Multiplier, Taylor};
+use nalgebra::{Complex, Matrix4, SMatrix};
 use serde::Serialize;
 use std::array;
 
@@ -22,10 +22,10 @@ const DEPTH: u32 = 6;
 pub enum Stability {
     /// All are smaller than this, which is at most 1.
     Stable(f64),
-    /// One is larger than 1.
-    Unstable,
+    /// One is larger than 1; the largest, as it is computed.
+    Unstable(Multiplier),
     /// Neither is proven.
-    Open,
+    Open(Multiplier),
 }
 
 impl Stability {
@@ -34,7 +34,10 @@ impl Stability {
     /// # Errors
     /// It is not proven to be stable.
     pub fn stable(self) -> Result<f64, Failure> {
-        if let Self::Stable(bound) = self { Ok(bound) } else { Err(Failure::NotStable) }
+        match self {
+            Self::Stable(bound) => Ok(bound),
+            Self::Unstable(largest) | Self::Open(largest) => Err(Failure::NotStable(largest)),
+        }
     }
 }
 
@@ -49,7 +52,7 @@ pub fn stability(passages: &[Passage]) -> Stability {
 fn stability_over(segments: &[Block], [middle, half]: [f64; 2], depth: u32) -> Stability {
     let part = |m: &Block| m.map(|row| row.map(|x| x.part([middle, half])));
     let own = stability_of(&segments.iter().map(part).collect::<Vec<_>>());
-    if own != Stability::Open || depth == 0 {
+    if !matches!(own, Stability::Open(_)) || depth == 0 {
         return own;
     }
     let quarter = 0.5 * half;
@@ -57,21 +60,25 @@ fn stability_over(segments: &[Block], [middle, half]: [f64; 2], depth: u32) -> S
         [middle - quarter, middle + quarter].map(|m| stability_over(segments, [m, quarter], depth - 1));
     match parts {
         [Stability::Stable(a), Stability::Stable(b)] => Stability::Stable(a.max(b)),
-        [Stability::Unstable, Stability::Unstable] => Stability::Unstable,
-        _ => Stability::Open,
+        [Stability::Unstable(largest), Stability::Unstable(_)] => Stability::Unstable(largest),
+        _ => own,
     }
 }
 
 /// Whether all multipliers of all matrices are below 1, or one of each is above.
 fn stability_of(segments: &[Block]) -> Stability {
     let product = segments.iter().fold(Matrix4::identity(), |product, m| middle(m) * product);
-    let largest = product.complex_eigenvalues().iter().fold(0.0, |most, x| f64::max(most, x.norm()));
+    let larger = |most: Complex<f64>, x: &Complex<f64>| if x.norm() > most.norm() { *x } else { most };
+    let Complex { re, im } = product.complex_eigenvalues().iter().fold(Complex::default(), larger);
+    let widths = segments.iter().flatten().flatten().map(|x| x.hull().width());
+    let computed = Multiplier { re, im: im.abs(), derivatives: widths.fold(0.0, f64::max) };
+    let largest = Complex { re, im }.norm();
     // A bound on the multipliers is the product of those on the segments.
     let share = |x: f64| x.max(LEAST).powf(1.0 / segments.len() as f64);
     if largest > 1.0 {
         let above = share(largest.sqrt()).max(1.0);
         let is_unstable = are_below(segments, above, above) == Some(false);
-        return if is_unstable { Stability::Unstable } else { Stability::Open };
+        return if is_unstable { Stability::Unstable(computed) } else { Stability::Open(computed) };
     }
     // Half-way between the multipliers and the bound the forms fall most.
     let is_stable =
@@ -81,7 +88,7 @@ fn stability_of(segments: &[Block]) -> Stability {
     };
     // The root of 1 is 1, whoever computes it: this rests on no library.
     if power(1.0) > 1.0 || !is_stable(1.0) {
-        return Stability::Open;
+        return Stability::Open(computed);
     }
     let tried = SHARP.iter().map(|to_one| largest + to_one * (1.0 - largest));
     let found = tried.filter(|bound| is_stable(*bound)).map(power).find(|bound| *bound < 1.0);
@@ -208,11 +215,13 @@ mod tests {
     #[test]
     fn exact_what_is_unstable_is_not_called_stable() {
         for matrix in [with(1.01, 0.5, 0.5, 1.0), with(0.2, -1.5, 0.5, 1.0), with(0.3, 0.1, 1.001, 1.0)] {
-            assert_eq!(stability_of(&[matrix]), Stability::Unstable);
+            assert!(matches!(stability_of(&[matrix]), Stability::Unstable(_)));
         }
         for matrix in [with(1.0, 0.5, 0.5, 1.0), with(0.2, -1.0, 0.5, 1.0), with(0.3, 0.1, 1.0, 1.0)] {
             let wide = matrix.map(|row| row.map(|x| Taylor::from(x.hull().wider(1e-9))));
-            assert_eq!(stability_of(&[wide]), Stability::Open);
+            let Stability::Open(largest) = stability_of(&[wide]) else { panic!("decided") };
+            assert!((largest.re.hypot(largest.im) - 1.0).abs() < 1e-9, "{largest}");
+            assert!((2e-9..2.1e-9).contains(&largest.derivatives), "{largest}");
         }
     }
 
@@ -226,7 +235,7 @@ mod tests {
         let Stability::Stable(bound) = stability_of(&pair) else { panic!("not stable") };
         assert!((0.5..0.51).contains(&bound), "{bound}");
         let pair = [diagonal([4.0, 0.1, 0.2, 0.3]), diagonal([0.26, 5.0, 0.2, 0.3])];
-        assert_eq!(stability_of(&pair), Stability::Unstable);
+        assert!(matches!(stability_of(&pair), Stability::Unstable(_)));
     }
 
     /// A multiplier that changes along a family, from 0.5 to 0.9 and to 1.1.
@@ -238,7 +247,7 @@ mod tests {
             (family[0][0], family[0][1]) = (Taylor::line(middle, half), Taylor::point(3.0));
             match stability_over(&[family], [0.0, 1.0], DEPTH) {
                 Stability::Stable(bound) => assert!(stable && (0.9..1.0).contains(&bound), "{bound}"),
-                other => assert!(!stable && other == Stability::Open, "{other:?}"),
+                other => assert!(!stable && matches!(other, Stability::Open(_)), "{other:?}"),
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::equations::{Flow, Mode, at};
 use crate::number::{
-    Family, Frame, Gradient, Matrix, STATE, State, identity, matrix, plus, times, times_vector,
+    Family, Frame, Gradient, Matrix, STATE, State, identity, matrix, plus, times, times_vector, width,
 };
 use crate::{Interval, Number, Taylor};
 use std::array;
@@ -50,6 +50,11 @@ impl States {
             (0..STATE).fold(Taylor::ZERO, |sum, j| sum + self.by[i][j] * Taylor::from(self.away[j]))
         };
         plus(&self.centre(), &array::from_fn(moved))
+    }
+
+    /// The largest width of that.
+    pub fn width(&self) -> f64 {
+        width(&self.all().map(Taylor::hull))
     }
 }
 

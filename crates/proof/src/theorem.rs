@@ -7,7 +7,7 @@
 
 use crate::elementary::pi;
 use crate::largest::{Largest, largest};
-use crate::number::{FREE, applied, off};
+use crate::number::{FREE, applied, off, width};
 use crate::orbit::{Closed, Guess, Orbit, Residual};
 use crate::segment::Node;
 use crate::stability::{Stability, stability};
@@ -153,7 +153,7 @@ fn of_orbit(equations: &Equations, closed: &Closed, search: &Search<'_>) -> Resu
 fn alone(equations: &Equations, closed: &Closed, search: &Search<'_>) -> Result<[Vec<Interval>; 2], Failure> {
     let none = vec![Interval::ZERO; closed.known.gaps.len()];
     let least = krawczyk(closed, &closed.known, &none);
-    let mut failure = Failure::Sequence;
+    let mut failure = Failure::Krawczyk(0.0, 0.0);
     for size in search.tried {
         let half_width = |(state, least): (Taylor, &Interval)| {
             let (state, least) = (state.mid().abs().max(1e-3), least.magnitude());
@@ -187,11 +187,6 @@ fn krawczyk(Closed { orbit, inverse, .. }: &Closed, known: &Residual, away: &[In
         terms.fold(-moved.hull(), |sum, term| sum + term)
     };
     moved.iter().zip(&off).map(row).collect()
-}
-
-/// The largest width.
-fn width(boxes: &[Interval]) -> f64 {
-    boxes.iter().map(|x| x.width()).fold(0.0, f64::max)
 }
 
 /// The walls in turn.
@@ -239,7 +234,7 @@ fn square([a, b]: Complex) -> Taylor {
 pub fn prove_steady(scene: &Scene, omega: [f64; 2]) -> Result<Theorem, Failure> {
     let (equations, [middle, half]) = (Equations::new(scene)?, middle_and_half(omega));
     if !equations.comes_to_rest() {
-        return Err(Failure::NotStable);
+        return Err(Failure::Undamped);
     }
     steady(&equations.at(Taylor::line(middle, half)))
 }
@@ -269,7 +264,7 @@ fn steady(equations: &Equations) -> Result<Theorem, Failure> {
     for side in Side::BOTH.into_iter().filter(|_| equations.has_walls()) {
         let gap = Interval::point(side.sign()) * (equations.walls[side as usize] - equations.rest);
         if !(gap - stroke).is_positive() {
-            return Err(Failure::Graze(Event::Touch(side)));
+            return Err(Failure::Graze(Event::Touch(side), stroke.width()));
         }
     }
     let [v1, w] = [x1, r].map(|amplitude| -(omega * amplitude[1]));

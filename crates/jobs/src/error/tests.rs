@@ -211,7 +211,7 @@ fn errors() -> Vec<Error> {
             place: path.join("parts"),
         },
         Error::NotHeld { path: path.clone(), problem: "does not hold: surf.csv is missing".into() },
-        Error::NotProven { name: "ssvi".into(), why: retune_proof::Failure::Sequence.to_string() },
+        Error::NotProven { name: "ssvi".into(), why: retune_proof::Failure::Sequence(1.5e-3).to_string() },
         Error::NotChecked { path: path.clone(), problem: "there is no manifest.json".into() },
         Error::Infeasible {
             name: "ssvi".into(),

@@ -1,7 +1,9 @@
 //! The search for pieces of a band of frequencies, each of which is proven at once. It only looks for what `retune_proof` can prove, and rests on nothing itself.
 
 use retune_model::{Bare, Coupled, Scene};
-use retune_proof::{Failure, Family, Guess, Interval, Largest, Start, Theorem, prove_over, prove_steady};
+use retune_proof::{
+    Failure, Family, Guess, Interval, Largest, Multiplier, Start, Theorem, prove_over, prove_steady,
+};
 use serde::{Serialize, Serializer};
 
 /// The longest piece and the shortest, rad/s.
@@ -17,6 +19,8 @@ const TIGHT: f64 = 1e-9;
 const HALVED: f64 = 2e-6;
 /// The longest piece that is tried after it, in what was left out: motions change fast next to a bifurcation.
 const AFTER: f64 = 8.0;
+/// A multiplier whose size is as near to 1 as this tells of a bifurcation nearby.
+const CRITICAL: f64 = 0.01;
 
 /// A piece of the band over which a family of motions is proven: at each of its frequencies there is exactly one in a box.
 #[derive(Clone, Debug, Serialize)]
@@ -47,15 +51,18 @@ pub struct Band {
 pub struct LeftOut {
     /// From where to where, rad/s.
     pub omega: [f64; 2],
-    /// Why not.
+    /// Why not, where it begins.
     pub why: Why,
+    /// Why not where it ends, if motions are proven from there on and were followed back to it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from_above: Option<Why>,
 }
 
 /// Why nothing is proven of a part of a band.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Why {
     /// The proof fails.
-    #[error(transparent)]
+    #[error("{0}{near}", near = next_to(.0))]
     Failure(#[from] Failure),
     /// A motion may have more energy than it is to have: bounds on it, and what it is to have at most.
     #[error("the motion may have an E1max of {bound} J, and at most {1} J are to be proven", bound = .0.hi())]
@@ -63,6 +70,20 @@ pub enum Why {
     /// No motion to prove anything of.
     #[error("none found: the run settles on no periodic motion")]
     NoGuess,
+}
+
+/// Which bifurcation is nearby by the largest multiplier, which is computed, of a motion that is not proven to be stable.
+fn next_to(failure: &Failure) -> &'static str {
+    match *failure {
+        Failure::NotStable(Multiplier { re, im, .. }) if (re.hypot(im) - 1.0).abs() < CRITICAL => {
+            match (im, re) {
+                (0.0, 0.0..) => ", as next to a fold or to the period doubling that it comes from",
+                (0.0, _) => ", as next to a period doubling",
+                _ => ", as next to a Neimark-Sacker bifurcation",
+            }
+        }
+        _ => "",
+    }
 }
 
 impl Serialize for Why {
@@ -84,9 +105,10 @@ pub fn band(scene: &Scene, [from, to]: [f64; 2], most: f64, guesses: Guesses<'_>
         if let (Some(first), Some(part)) = (first, band.left_out.last_mut())
             && part.omega[1] == at
         {
-            let mut back = task.march([at, part.omega[0]], LONGEST, Some(first)).pieces;
+            let March { pieces: mut back, stop, .. } = task.march([at, part.omega[0]], LONGEST, Some(first));
             back.reverse();
             part.omega[1] = back.first().map_or(at, |piece| piece.omega[0]);
+            part.from_above = stop.map(|(_, why)| why);
             band.pieces.extend(back);
             if part.omega[1] <= part.omega[0] {
                 band.left_out.pop();
@@ -97,7 +119,7 @@ pub fn band(scene: &Scene, [from, to]: [f64; 2], most: f64, guesses: Guesses<'_>
         band.pieces.extend(pieces);
         if let Some((end, why)) = stop {
             let next = (at + gap).max(end).min(to);
-            band.leave_out(LeftOut { omega: [at, next], why });
+            band.leave_out(LeftOut { omega: [at, next], why, from_above: None });
             (at, gap, length) = (next, (2.0 * gap).min(LEFT_OUT[1]), (AFTER * gap).min(LONGEST));
         }
     }
@@ -110,9 +132,9 @@ pub fn band(scene: &Scene, [from, to]: [f64; 2], most: f64, guesses: Guesses<'_>
 /// The proof does not cover such scenes.
 pub fn steady_band(scene: &Scene, omega: [f64; 2], most: f64) -> Result<Option<Band>, Failure> {
     match prove_steady(scene, omega) {
-        Err(Failure::NotStable) => return Ok(None),
+        Err(Failure::Undamped) => return Ok(None),
         // Walls that are touched over the whole band may not be touched over parts of it.
-        Ok(_) | Err(Failure::Graze(_)) => {}
+        Ok(_) | Err(Failure::Graze(..)) => {}
         Err(why) => return Err(why),
     }
     let worst = match &scene.damper {
@@ -138,7 +160,7 @@ impl Band {
             Ok(Theorem { largest: Largest { energy, .. }, .. })
                 if energy.lo() > most || (is_short && energy.hi() > most) =>
             {
-                self.leave_out(LeftOut { omega, why: Why::Above(energy, most) });
+                self.leave_out(LeftOut { omega, why: Why::Above(energy, most), from_above: None });
                 Ok(true)
             }
             Ok(theorem) if is_short || (to - from <= LONGEST && theorem.largest.energy.hi() <= goal) => {
@@ -165,7 +187,9 @@ impl Band {
     /// Adds a part, as one with that before it if they meet.
     fn leave_out(&mut self, part: LeftOut) {
         match self.left_out.last_mut() {
-            Some(last) if last.omega[1] == part.omega[0] => last.omega[1] = part.omega[1],
+            Some(last) if last.omega[1] == part.omega[0] => {
+                (last.omega[1], last.from_above) = (part.omega[1], part.from_above);
+            }
             _ => self.left_out.push(part),
         }
     }

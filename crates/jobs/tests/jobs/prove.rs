@@ -72,8 +72,13 @@ fn contract_an_unstable_motion_is_proven_from_its_state_and_not_called_stable() 
         [-0.04618206941599734, 0.12210602044391623, 0.11191069155584588, -0.23375919700486558].map(number);
     let from = Some((Start { x1, v1, x2: Some(x2), v2 }, 1));
     let proof = good(prove(&place("results/ssvi"), &Guess { from, ..at(7.531425492418166) }));
-    assert!(proof.to_string().contains("\nunstable      a multiplier is above 1\n"), "{proof}");
-    assert_eq!(json!(proof)["stability"], json!("unstable"));
+    assert!(
+        proof
+            .to_string()
+            .contains("\nunstable      a multiplier is above 1: the largest multiplier is about -1."),
+        "{proof}"
+    );
+    assert!(json!(proof)["stability"]["unstable"]["re"].as_f64() < Some(-1.0), "{proof}");
 }
 
 #[test]
@@ -169,6 +174,31 @@ fn contract_what_is_not_proven_of_a_band_is_named() {
     let none = band_of([6.0, 6.01], 1e3, &|_| None);
     assert_eq!((none.left_out.len(), none.left_out[0].omega), (1, [6.0, 6.01]));
     assert_eq!(none.left_out[0].why, Why::NoGuess);
+}
+
+/// Just below the period doubling at 7.506679 rad/s the motion is stable, above it is not.
+#[test]
+fn contract_what_happens_next_to_a_bifurcation_is_named() {
+    // `results/branches/tuned`, branch 0, place 159.
+    let near = [-0.04706820096872666, 0.1284257542017473, 0.11633626692455387, -0.24632314511812572];
+    let found = band_of([7.5066, 7.5067], 226.0, &|_| Some((near, 1)));
+    let [part] = &found.left_out[..] else { panic!("{found:?}") };
+    assert!((7.5066..7.506679).contains(&part.omega[0]) && part.from_above.is_none(), "{found:?}");
+    let words = part.why.to_string();
+    assert!(words.contains("the largest multiplier is about -1.000"), "{words}");
+    assert!(words.ends_with(" wide, as next to a period doubling"), "{words}");
+}
+
+/// About the largest E1max, 225.8139 J, the motions have more than is to be proven; the part has a reason for each of its ends.
+#[test]
+fn contract_both_ends_of_a_part_that_is_left_out_have_their_reasons() {
+    let found = band_of([6.62, 6.64], 225.81, &|_| Some((NEAR, 1)));
+    let [part] = &found.left_out[..] else { panic!("{found:?}") };
+    assert!(part.omega[0] > 6.62 && part.omega[1] < 6.64, "{found:?}");
+    assert!(
+        matches!(part.why, Why::Above(..)) && matches!(part.from_above, Some(Why::Above(..))),
+        "{found:?}"
+    );
 }
 
 /// A force, an imbalance, and bases of given displacement and acceleration, with a TMD and without.
