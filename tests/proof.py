@@ -12,8 +12,8 @@ import sys
 
 PLACE = pathlib.Path(__file__).parent.parent / "results" / "proof"
 README = PLACE / "README.md"
-# Bifurcations of the tuned damper, computed.
-BRANCHES = PLACE.parent / "branches" / "tuned" / "bifurcations.csv"
+# Motions of the tuned damper and their bifurcations, computed.
+BRANCHES = PLACE.parent / "branches" / "tuned"
 HEAD = """# Proven bands
 
 `just proof` made these files: [a proof by interval arithmetic](../../docs/proof.md) that at every frequency of a band, but for what is named, there is a stable
@@ -25,11 +25,7 @@ periodic motion with at most so much energy. The JSON files have the pieces with
 """
 # The files of the hedged damper, by the restitution of its contacts.
 HEDGED = {"0.6": "", "0.7": "-0.7", "0.8": "-0.8", "0.9": "-0.9", "1": "-lossless"}
-HOLES = (
-    "no band was proven over {}. What [`retune branches`](../branches/tuned/README.md) computes of it: motions of 4 periods are stable up to a Neimark-Sacker bifurcation at "
-    "7.711963 rad/s, of 12 from a fold at 7.714763 to a period doubling at 7.715157, of 8 from a period doubling at 7.825353 to one at 7.853689, and of 4 beyond; no stable periodic "
-    "motion is known from 7.711963 to 7.714763 and from 7.715157 to 7.825353. Over the others bands were not run to their end"
-)
+HOLES = "no band was proven over {}; what [`retune branches`](../branches/tuned/README.md) computes there is below"
 SINGLE = """
 ## Single frequencies
 
@@ -43,7 +39,7 @@ INTERVALS = """
 
 What was proven from where to where, and what not: at each frequency of a row there is a stable motion that repeats after so many periods of the force and strikes
 these walls in turn (S the structure, O the obstacle). Ends are rounded to the side on which less is proven; the JSON files have them in full. What is not proven is
-about a bifurcation, whose kind is computed, not proven.
+next to a bifurcation, whose kind, multiplier and place are computed, not proven.
 
 | file | omega, rad/s | periods | impacts | E1max is at most, J |
 | --- | --- | --- | --- | --- |
@@ -55,7 +51,7 @@ def intervals(proof):
     parts = [(part["omega"], part) for part in proof["pieces"] + proof["left_out"]]
     found = []
     for omega, part in sorted(parts, key=lambda part: part[0]):
-        kind = (part["why"],) if "why" in part else (part["periods"], part["impacts"] or "none")
+        kind = (reasons(part),) if "why" in part else (part["periods"], part["impacts"] or "none")
         most = 0.0 if "why" in part else part["largest"]["E1max"][1]
         if found and found[-1][0] == kind:
             (_, ends, least) = found[-1]
@@ -65,24 +61,47 @@ def intervals(proof):
     return found
 
 
+def reasons(part):
+    """Why nothing is proven where a gap begins, and where it ends."""
+    return "; from above, ".join(part[end] for end in ("why", "from_above") if end in part)
+
+
 def bifurcations():
     """At stable motions of the tuned damper: frequency, and what it is."""
-    with BRANCHES.open() as file:
-        rows = list(csv.DictReader(file))
+    rows = read("bifurcations.csv")
     # All other multipliers are inside the unit circle, but for the one or two that reach it.
     size = lambda row: max(math.hypot(float(row[f"re{n}"]), float(row[f"im{n}"])) for n in range(1, 5))
     stable = [row for row in rows if row["kind"] != "grazing" and size(row) < 1 + 1e-6]
-    return [(float(row["omega"]), f"{row['kind']} of the motion of {row['periods']} {plural(row['periods'])}") for row in stable]
+    return sorted((float(row["omega"]), f"{row['kind']} of the motion of {row['periods']} {plural(row['periods'])}") for row in stable)
+
+
+def read(name):
+    with (BRANCHES / name).open() as file:
+        return list(csv.DictReader(file))
+
+
+def hole(ends):
+    """A row of what no file is about: the bifurcations in it, and between which of them no stable motion is known."""
+    stable = [float(row["omega"]) for row in read("branches.csv") if row["stable"] == "1"]
+    at = [omega for omega, _ in bifurcations() if ends[0] <= omega <= ends[1]]
+    empty = [f"{a:.6f} to {b:.6f}" for a, b in zip(at, at[1:]) if not any(a < omega < b for omega in stable)]
+    known = f"; no stable motion is known from {' and from '.join(empty)}" if empty else ""
+    return f"| none | {gap(ends)} | - | no band was proven (computed: {computed(ends)}{known}) | - |\n"
 
 
 def plural(periods):
     return "period" if str(periods) == "1" else "periods"
 
 
+def computed(ends):
+    """The bifurcations of the tuned damper in a gap."""
+    return "; ".join(f"{words} at {omega:.6f}" for omega, words in bifurcations() if ends[0] <= omega <= ends[1])
+
+
 def kind(name, proof, ends):
     """What bifurcation a gap is about: the computed one of the tuned damper in it; of other dampers, what the proven motions beside it say."""
     if "hedged" not in name:
-        return "; ".join(f"{words} at {omega:.6f}" for omega, words in bifurcations() if ends[0] <= omega <= ends[1])
+        return computed(ends)
     beside = [piece["periods"] for side in (0, 1) for piece in proof["pieces"] if piece["omega"][1 - side] == ends[side]]
     return f"motions of {beside[0]} {plural(beside[0])} before it, of {beside[1]} beyond: a period doubling" if len(beside) == 2 and beside[1] == 2 * beside[0] else ""
 
@@ -149,15 +168,20 @@ def width(parts):
 def single(file):
     """A row of a motion at one frequency."""
     proof = json.loads(file.read_text())
-    stable = proof["stability"]["stable"] if isinstance(proof["stability"], dict) else "not proven"
+    stable = proof["stability"].get("stable", "not proven")
     name = f"single/{file.name}"
     return f"| [{name}]({name}) | {proof['omega']:g} | {proof['periods']} | {proof['impacts']} | {stable} | {upwards(proof['largest']['E1max'][1])} |\n"
 
 
+def bands(proofs):
+    """Those of the tuned damper, and what lies between them."""
+    own = sorted((proof for name, proof in proofs.items() if name.startswith("ssvi") and "hedged" not in name), key=lambda p: p["omega"])
+    return own, [(a["omega"][1], b["omega"][0]) for a, b in zip(own, own[1:]) if a["omega"][1] < b["omega"][0]]
+
+
 def tuned(proofs):
     """What the bands of the tuned damper say together, and what lies between them."""
-    own = sorted((proof for name, proof in proofs.items() if name.startswith("ssvi") and "hedged" not in name), key=lambda p: p["omega"])
-    holes = [(a["omega"][1], b["omega"][0]) for a, b in zip(own, own[1:]) if a["omega"][1] < b["omega"][0]]
+    own, holes = bands(proofs)
     (a, b), most = (own[0]["omega"][0], own[-1]["omega"][1]), max(proof["E1max"][1] for proof in own)
     left, at = [], a
     for start, end in sorted(piece["omega"] for proof in own for piece in proof["pieces"]):
@@ -185,6 +209,7 @@ def main():
     text = HEAD + "".join(row(name, proof) for name, proof in proofs.items())
     text += "\n## Together\n\n" + tuned(proofs) + hedged(proofs)
     text += INTERVALS + "".join(interval(name, proof, *part) for name, proof in proofs.items() for part in intervals(proof))
+    text += "".join(map(hole, bands(proofs)[1]))
     text += SINGLE + "".join(single(file) for file in sorted((PLACE / "single").glob("*.json")))
     if "--write" in sys.argv:
         README.write_text(text)
