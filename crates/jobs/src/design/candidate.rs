@@ -1,6 +1,6 @@
 //! A damper that may be built, or none: what it has of each quantity over the whole band.
 
-use retune_model::{Damper, Measure, PerMeasure};
+use retune_model::{Damper, Forcing, Measure, PerMeasure, Scene, Source};
 use retune_optim::{Limit, Limits, Need, Unusable};
 use retune_study::Study;
 use serde::Serialize;
@@ -86,6 +86,13 @@ impl Candidate {
     /// Whether it stands under a shock or a record, so that no value has a frequency.
     pub fn is_transient(&self) -> bool {
         self.study.scene.forcing.is_transient()
+    }
+
+    /// Its goal under what is given in time with the other sign; none under a harmonic.
+    pub fn with_other_sign(&self) -> Option<f64> {
+        let Study { scene, .. } = &self.study;
+        let source = Source::History(scene.forcing.history()?.reversed()?);
+        self.study.energy(&Scene { forcing: Forcing { source, ..scene.forcing }, ..*scene })
     }
 
     /// The largest steady value of a quantity, or that under a shock or a record, in its SI unit.

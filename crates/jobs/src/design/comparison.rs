@@ -6,7 +6,7 @@ use super::words::{parameters, question, sized};
 use super::{Formula, ssvi, tmd};
 use crate::certify::{Certificate, Verdict, judge, judge_in_seconds};
 use crate::{Error, Observer};
-use retune_model::{Design, Forcing, Measure, Parameter, Scene, Source};
+use retune_model::{Design, Measure, Parameter, Scene};
 use retune_optim::{Limit, Need};
 use retune_store::Journal;
 use retune_study::{Rule, Setting, Study};
@@ -221,7 +221,7 @@ pub(super) fn compare(
         };
         ssvi::tell_compared(&found, ssvi.as_ref().zip(least), watch)?;
     }
-    let other_sign = ssvi.as_ref().and_then(with_other_sign);
+    let other_sign = ssvi.as_ref().and_then(Candidate::with_other_sign);
     let much_better = |certificate: &Certificate| (1.0 + SAME) * worst_nearby(certificate) < tmd.goal;
     let is_trusted = judged
         .as_ref()
@@ -255,13 +255,6 @@ pub(super) fn compare(
         certificate,
         ssvi_certificate: judged,
     })
-}
-
-/// The goal of a damper under what is given in time with the other sign; none under a harmonic.
-fn with_other_sign(damper: &Candidate) -> Option<f64> {
-    let Study { scene, .. } = &damper.study;
-    let source = Source::History(scene.forcing.history()?.reversed()?);
-    damper.study.energy(&Scene { forcing: Forcing { source, ..scene.forcing }, ..*scene })
 }
 
 /// The one to build: a damper without walls is simpler to build and easier to trust; one with walls must be much better, and hold where it
