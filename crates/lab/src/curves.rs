@@ -219,7 +219,7 @@ pub fn work_precision(path: &Path, cases: &[Case], rows: &[Row], measure: Measur
                Purple: Rust crates. Orange: GNU Octave, where it is among the best. Grey: SciPy, SUNDIALS.";
     let note = "Left Retune's methods, right the hybrid beside of every other program the method that served the scene best; of more than six the \
                 best six, with hybrid and ode23s. Contacts are located unless it says stepped. \
-                Points beyond the axes lie on their ends. All runs, failures with their reason: runs.csv.";
+                Hollow squares on the frame: points beyond it. All runs, failures with their reason: runs.csv.";
     sheet(path, &title, &[key, note], 2, panels.collect())
 }
 

@@ -27,7 +27,7 @@ pub const fn look(method: Method) -> (Colour, f64, Shape) {
 pub struct Line {
     /// Its name; an empty one is not written.
     pub name: String,
-    /// Its points. Those beyond the axes are drawn on their ends.
+    /// Its points. Those beyond the axes are hollow squares on the frame.
     pub points: Vec<(f64, f64)>,
     pub colour: Colour,
     /// Its width, pt; zero draws points alone.
@@ -50,7 +50,7 @@ pub fn panel(title: &str, x: Axis, y: Axis, lines: Vec<Line>, height: f64) -> Ch
         let ends = [x.range(), y.range()];
         let held = |p: (f64, f64)| (p.0.clamp(ends[0].0, ends[0].1), p.1.clamp(ends[1].0, ends[1].1));
         let finite = points.into_iter().filter(|p| p.0.is_finite() && p.1.is_finite());
-        let points: Vec<(f64, f64)> = finite.map(held).collect();
+        let points: Vec<(f64, f64)> = finite.collect();
         let size = match shape {
             Some(Shape::Ring) => 4.6,
             _ if width > 1.0 => 3.6,
@@ -58,7 +58,7 @@ pub fn panel(title: &str, x: Axis, y: Axis, lines: Vec<Line>, height: f64) -> Ch
         };
         let mark = shape.map(|shape| Mark::new(shape, colour, size));
         if let (Some(&at), false) = (points.iter().max_by(|a, b| a.0.total_cmp(&b.0)), name.is_empty()) {
-            names.push(Layer::Name { at, text: name, mark });
+            names.push(Layer::Name { at: held(at), text: name, mark });
         }
         if width > 0.0 {
             layers.push(Layer::Line {
@@ -66,7 +66,14 @@ pub fn panel(title: &str, x: Axis, y: Axis, lines: Vec<Line>, height: f64) -> Ch
                 stroke: Stroke::new(colour, width, Dash::Solid),
             });
         }
-        layers.extend(mark.map(|mark| Layer::Marks { points, mark }));
+        if let Some(mark) = mark {
+            let beyond: Vec<(f64, f64)> =
+                points.iter().filter(|p| held(**p) != **p).map(|p| held(*p)).collect();
+            layers.push(Layer::Marks { points, mark });
+            if !beyond.is_empty() {
+                layers.push(Layer::Marks { points: beyond, mark: Mark::new(Shape::Frame, colour, 4.6) });
+            }
+        }
     }
     layers.extend(names);
     Chart { title: title.to_owned(), x, y, layers, height }
@@ -96,12 +103,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn contract_points_beyond_the_axes_lie_on_their_ends_and_a_name_stands_at_the_last() {
+    fn contract_points_beyond_the_axes_are_hollow_on_the_frame_and_a_name_stands_at_the_last() {
         let points = vec![(1e-20, 5.0), (0.1, f64::NAN), (10.0, 1e9)];
         let line = Line::new("a", points, look(Method::Hybrid));
-        let chart = panel("", Axis::log("x", (1e-15, 1.0)), Axis::log("y", (1.0, 100.0)), vec![line], 100.0);
-        let Layer::Line { points, .. } = &chart.layers[0] else { panic!("{:?}", chart.layers) };
-        assert_eq!(points, &[(1e-15, 5.0), (1.0, 100.0)]);
+        let (x, y) = (Axis::log("x", (1e-15, 1.0)), Axis::log("y", (1.0, 100.0)));
+        let chart = panel("", x, y, vec![line], 100.0);
+        let Layer::Marks { points, mark } = &chart.layers[2] else { panic!("{:?}", chart.layers) };
+        assert_eq!((&points[..], mark.shape), (&[(1e-15, 5.0), (1.0, 100.0)][..], Shape::Frame));
         let Some(Layer::Name { at, .. }) = chart.layers.last() else { panic!("{:?}", chart.layers) };
         assert_eq!(*at, (1.0, 100.0));
     }

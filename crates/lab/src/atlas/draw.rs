@@ -10,7 +10,7 @@ use std::path::Path;
 /// Space between two groups of rows, in rows.
 const GAP: f64 = 0.4;
 /// Height of a row, pt.
-const ROW: f64 = 11.5;
+const ROW: f64 = 15.5;
 /// All verdicts, the best first.
 pub const VERDICTS: [Verdict; 5] =
     [Verdict::Works, Verdict::Miscounts, Verdict::Inaccurate, Verdict::Says, Verdict::Silent];
@@ -44,6 +44,16 @@ fn figure(error: f64) -> String {
     }
 }
 
+/// `5.3 k`, or `12 M`.
+fn thousands(count: u64) -> String {
+    match count as f64 {
+        n if n < 1e3 => format!("{n}"),
+        n if n < 1e4 => format!("{:.1} k", n / 1e3),
+        n if n < 1e6 => format!("{:.0} k", n / 1e3),
+        n => format!("{:.1} M", n / 1e6),
+    }
+}
+
 /// Draws the matrix.
 pub fn matrix(path: &Path, rows: &[Row]) -> Any<()> {
     let mut layers = Vec::new();
@@ -58,7 +68,14 @@ pub fn matrix(path: &Path, rows: &[Row]) -> Any<()> {
             let (sign, colour, opacity) = look(cell.verdict);
             layers.push(Layer::Band { x: (x - 0.48, x + 0.48), y: (y - 0.46, y + 0.46), colour, opacity });
             let said = if cell.verdict == Verdict::Says { "stops".into() } else { figure(cell.error) };
-            layers.push(Layer::Text { at: (x, y), text: format!("{sign} {said}"), stand: Stand::Cell });
+            layers.push(Layer::Text { at: (x, y + 0.2), text: format!("{sign} {said}"), stand: Stand::Cell });
+            if cell.evaluations > 0 {
+                layers.push(Layer::Text {
+                    at: (x, y - 0.22),
+                    text: thousands(cell.evaluations),
+                    stand: Stand::Cell,
+                });
+            }
         }
         y -= 1.0;
     }
@@ -98,7 +115,11 @@ pub fn matrix(path: &Path, rows: &[Row]) -> Any<()> {
             columns: 1,
             stacked: false,
             legend: VERDICTS.map(key).to_vec(),
-            caption: vec!["In each cell: the larger relative error of E1max and final state.".to_owned()],
+            caption: vec![
+                "In each cell: the larger relative error of E1max and final state; below, evaluations of right-hand side and Jacobian (k: thousands), \
+                 each exact step of the hybrid as one."
+                    .to_owned(),
+            ],
         }),
     )?;
     Ok(())

@@ -1,5 +1,5 @@
-//! `just lab stability`: every method on every difficulty, into `results/stability/`; `just lab stability manifest` writes only its manifest, and
-//! `just lab stability pictures` only the charts of `missed.csv` and `rigid.csv`, and the manifest.
+//! `just lab stability`: every method on every difficulty, into `results/stability/`; `just lab stability check` makes all of it again and compares
+//! it byte for byte.
 
 use rayon::prelude::*;
 use retune_jobs::methods;
@@ -15,19 +15,37 @@ use std::path::Path;
 
 fn main() -> Any<()> {
     let folder = Path::new("results/stability");
+    match std::env::args().nth(1).as_deref() {
+        None => write(folder),
+        Some("check") => check(folder),
+        Some(other) => Err(format!("stability {other}: nothing, or check").into()),
+    }
+}
+
+/// Writes all files elsewhere and compares them with those of a directory.
+fn check(folder: &Path) -> Any<()> {
+    let again = Path::new("target/stability");
+    if again.exists() {
+        fs::remove_dir_all(again)?;
+    }
+    write(again)?;
+    let mut changed = Vec::new();
+    for entry in fs::read_dir(again)? {
+        let name = entry?.file_name();
+        if fs::read(again.join(&name))? != fs::read(folder.join(&name)).unwrap_or_default() {
+            changed.push(name.to_string_lossy().into_owned());
+        }
+    }
+    if changed.is_empty() {
+        Ok(())
+    } else {
+        Err(format!("results/stability is not what the code makes: {}", changed.join(" ")).into())
+    }
+}
+
+/// Writes all files.
+fn write(folder: &Path) -> Any<()> {
     fs::create_dir_all(folder)?;
-    if std::env::args().nth(1).as_deref() == Some("manifest") {
-        return seal(folder);
-    }
-    let drawn = || {
-        let text = |name: &str| fs::read_to_string(folder.join(name));
-        missed::draw(&folder.join("missed.svg"), &text("missed.csv")?)?;
-        rigid::draw(&folder.join("rigid.svg"), &text("rigid.csv")?)
-    };
-    if std::env::args().nth(1).as_deref() == Some("pictures") {
-        drawn()?;
-        return seal(folder);
-    }
     let rows = rows()?;
     fs::write(folder.join("atlas.csv"), atlas_csv(&rows)?)?;
     draw::matrix(&folder.join("atlas.svg"), &rows)?;
@@ -44,7 +62,9 @@ fn main() -> Any<()> {
         write!(text, "\n{what}\n\n![{name}]({name}.svg)\n\nNumbers: [`{name}.csv`]({name}.csv).\n")?;
         fs::write(folder.join(format!("{name}.csv")), table)?;
     }
-    drawn()?;
+    let table = |name: &str| fs::read_to_string(folder.join(name));
+    missed::draw(&folder.join("missed.svg"), &table("missed.csv")?)?;
+    rigid::draw(&folder.join("rigid.svg"), &table("rigid.csv")?)?;
     let cells = |line: &str| format!("| {} |\n", line.replace(',', " | "));
     let mut lines = optima.lines();
     let head = lines.next().unwrap_or_default();
@@ -104,7 +124,8 @@ fn heading(rows: &[Row]) -> Result<String, std::fmt::Error> {
         "# Where methods fail\n\nWritten by `just lab stability`. Every method runs each difficulty as a careful user would, at rtol 1e-6 or steps of 1 ms; \
          `ode23s defaults` is MATLAB's rtol 1e-3, as in the paper. The error is the larger of the relative errors of E1max and of the final state, against the hybrid at \
          rtol 1e-12, which DOP853 confirms (a test). *Works*: at most {:e}, every impact counted. *Miscounts*: the motion is as right, but shallow impacts are missed or counted twice. *Inaccurate*: at most {:e}, and at most one impact, or one in ten, miscounted. \
-         *Says it fails*: an error is returned. *Fails silently*: anything else.\n\n![atlas](atlas.svg)\n\n\
+         *Says it fails*: an error is returned. *Fails silently*: anything else. Below each error: the evaluations of right-hand side and Jacobian; of the hybrid, each step of its exact flight counts as one. \
+         Nothing here is a time: `just lab stability check` makes all of it again and compares it byte for byte.\n\n![atlas](atlas.svg)\n\n\
          | method | works | miscounts | inaccurate | says it fails | fails silently |\n| --- | --- | --- | --- | --- | --- |\n",
         retune_lab::atlas::WORKS,
         retune_lab::atlas::INACCURATE
