@@ -1,5 +1,5 @@
 //! How much work a run is. A mistake that only makes runs slow is seen here, on a busy machine as on a quiet one; times and
-//! instructions are measured by `just lab bench` and `just lab bench-instructions`.
+//! instructions are measured by `just lab bench-instructions`.
 
 use retune_solver::methods::{Ode23s, Ode45, OneStep, Tolerance};
 use retune_solver::{Contacts, Method, Settings, System, Window, Work, least_steps, simulate};
