@@ -55,7 +55,7 @@ def examine(retune, name, row, state):
     study, omega = STUDIES[name], row["omega"]
     proof, why = ask(retune, "prove", study, "--omega", omega, start, "--periods", row["periods"])
     if proof is None:
-        return why.split(": ")[-1].split(";")[0]
+        return why.split("not proven: ")[-1].split(";")[0]
     known = proof["largest"]["E1max"]
     runs = [ask(retune, "simulate", study, "--set", f"omega={omega}", start, "--solver", m)[0] for m in METHODS]
     values = [float(row["E1max"])] + [run["E1max"] for run in runs]

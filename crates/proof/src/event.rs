@@ -96,13 +96,13 @@ pub enum Failure {
     #[error("in a segment: no impact, lift-off or crest within {0} steps; its box is {1:.1e} wide")]
     Endless(usize, f64),
     /// The guess does not repeat after so many periods of the force: so far it is off.
-    #[error("the guess is refused: after {0} periods of the force it is {1:.1e} (m, m/s or rad) off")]
+    #[error("the guess is refused; after {0} periods of the force it is {1:.1e} (m, m/s or rad) off")]
     Guess(usize, f64),
     /// The sequence of events of a motion becomes another one by a change of it of this size.
     #[error("by Newton's iteration: the sequence of impacts becomes another one by a change of {0:.1e}")]
     Sequence(f64),
     /// Krawczyk's operator maps no box into itself: the width of the last box, and of what became of it.
-    #[error("by Krawczyk's operator: no box is mapped into itself: one {0:.1e} wide becomes {1:.1e} wide")]
+    #[error("by Krawczyk's operator: no box is mapped into itself; one {0:.1e} wide becomes {1:.1e} wide")]
     Krawczyk(f64, f64),
     /// A motion that is to be stable was not proven to be.
     #[error("the motion is not proven to be stable: {0}")]
