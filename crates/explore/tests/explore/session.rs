@@ -449,7 +449,7 @@ fn contract_what_is_no_pulse_and_no_record_is_refused() {
     assert_eq!(under(file.clone(), None).problem, "record: the text of its file is missing");
     for (text, words) in [
         ("", "is empty"),
-        ("t,a\n0,1\n", "samples"),
+        ("t,a\n0,1\n", "1 sample:"),
         ("t,a\n0,1\n0,2\n", "does not come after"),
         ("t,a\n0,x\n", "line 2"),
     ] {
