@@ -18,7 +18,7 @@ pub static ACCURACY: Kind = Kind {
     input: SEVERAL,
     rows: &[("runs.csv", again)],
     whole: &[],
-    derived: &["*.svg", "README.md"],
+    derived: &["models.csv", "machine.json", "*.svg", "README.md"],
 };
 
 /// The files of the atlas of failures.
@@ -75,7 +75,7 @@ fn again(place: &Path, _name: &str) -> Result<Source, Error> {
     let names: Vec<String> = studies.iter().map(|(name, _)| name.clone()).collect();
     let source = Source::new(move |row| {
         let (_, study) = studies.iter().find(|(name, _)| name == scene_of(row))?;
-        Some(columns(row).map(str::to_owned).into_iter().zip(numbers(&plan, row, study)?).collect())
+        Some(columns(row).iter().map(|&name| name.to_owned()).zip(numbers(&plan, row, study)?).collect())
     });
     Ok(source.only(move |row| {
         ["", "retune"].contains(&row.text("program")) && names.iter().any(|name| name == scene_of(row))
@@ -88,8 +88,11 @@ fn scene_of(row: Row<'_>) -> &str {
 }
 
 /// The columns that are computed again.
-fn columns(row: Row) -> [&'static str; 4] {
-    [if is_of_atlas(row) { "error" } else { "E1max" }, "impacts", "expected_impacts", "evaluations"]
+fn columns(row: Row) -> &'static [&'static str] {
+    const ATLAS: [&str; 4] = ["impacts", "expected_impacts", "evaluations", "error"];
+    const RUNS: [&str; 6] =
+        ["impacts", "expected_impacts", "evaluations", "E1max", "E1max_error", "state_error"];
+    if is_of_atlas(row) { &ATLAS } else { &RUNS }
 }
 
 /// Whether a row is one of the atlas of failures, which names its scene by its difficulty.
@@ -113,19 +116,26 @@ fn numbers(plan: &Value, row: Row, study: &Study) -> Option<Vec<f64>> {
     let expected = run(scene, window, &reference)?;
     let found = run(scene, window, &settings(method, contacts, setting, max_steps));
     let Some((found, impacts)) = found else {
-        let (error, none) = if is_of_atlas(row) { (f64::NAN, 0.0) } else { (f64::INFINITY, f64::INFINITY) };
-        return Some(vec![error, none, expected.1 as f64, none]);
+        let none = if is_of_atlas(row) { 0.0 } else { f64::INFINITY };
+        let failed = if is_of_atlas(row) { vec![f64::NAN] } else { vec![f64::INFINITY; 3] };
+        return Some([vec![none, expected.1 as f64, none], failed].concat());
     };
     let states = [found.final_state, expected.0.final_state];
     let energies = [found.e1_max.value, expected.0.e1_max.value];
     let [e1, state] = errors(energies, states, scene.forcing.frequency.get());
-    // The atlas prints its errors to three digits.
-    let first = if is_of_atlas(row) {
-        format!("{:.2e}", e1.max(state)).parse().unwrap_or(f64::NAN)
+    let counts = vec![impacts as f64, expected.1 as f64, evaluations(method, &found) as f64];
+    // Errors are printed to three digits in the atlas, to four among the runs.
+    let own = if is_of_atlas(row) {
+        vec![printed(e1.max(state), 2)]
     } else {
-        found.e1_max.value
+        vec![found.e1_max.value, printed(e1, 3), printed(state, 3)]
     };
-    Some(vec![first, impacts as f64, expected.1 as f64, evaluations(method, &found) as f64])
+    Some([counts, own].concat())
+}
+
+/// A number as it stands in a table, with so many digits behind the point.
+fn printed(value: f64, digits: usize) -> f64 {
+    format!("{value:.digits$e}").parse().unwrap_or(f64::NAN)
 }
 
 fn run(scene: &Scene, window: Window, settings: &Settings) -> Option<(Response, usize)> {

@@ -1,10 +1,11 @@
 //! Curves of error against cost of a table of runs, the cost of a level of accuracy, and their charts.
 
 use crate::Any;
-use crate::panel::{Line, WIDTHS, look, panel, sheet};
+use crate::panel::{Line, WIDTHS, look, panel, shade, sheet};
+use crate::reference::Reference;
 use crate::runs::Row;
 use crate::scenes::Case;
-use retune_report::colour::{Colour, GREEN, GREY, ORANGE, PURPLE};
+use retune_report::colour::{Colour, GREEN, GREY, ORANGE, PURPLE, SKY};
 use retune_report::{Axis, Shape};
 use retune_solver::Method;
 use std::path::Path;
@@ -43,12 +44,17 @@ impl Curve<'_> {
         self.name.split_once(' ').map_or("retune", |(program, _)| program)
     }
 
-    /// Least cost at which the error stays below a level, and the setting.
-    pub fn cost_at(&self, level: f64, in_time: bool) -> Option<(f64, f64)> {
+    /// Whether its right-hand side is interpreted, so that its time says nothing about the method.
+    pub fn is_interpreted(&self) -> bool {
+        ["Octave", "SciPy"].contains(&self.program())
+    }
+
+    /// Least time at which the error stays below a level, s, and the setting.
+    pub fn cost_at(&self, level: f64) -> Option<(f64, f64)> {
         self.points
             .iter()
             .filter(|(error, _)| *error <= level)
-            .filter_map(|(_, row)| Some((row.cost(in_time)?, row.setting)))
+            .filter_map(|(_, row)| Some((row.cost(true)?, row.setting)))
             .min_by(|a, b| a.0.total_cmp(&b.0))
     }
 }
@@ -56,6 +62,9 @@ impl Curve<'_> {
 /// Names of the default method, and of the paper's.
 const HYBRID: &str = "hybrid";
 const PAPERS: &str = "ode23s";
+
+/// Errors below it mean nothing, even where two references agree better: rounding.
+const FLOOR: f64 = 1e-13;
 
 /// Smallest error that is distinguished from zero.
 const ROUNDING: f64 = 1e-15;
@@ -82,7 +91,7 @@ pub fn rank(curve: &Curve<'_>) -> (usize, f64) {
     [1e-6, 1e-4, 1e-2]
         .into_iter()
         .enumerate()
-        .find_map(|(i, level)| Some((i, curve.cost_at(level, true)?.0)))
+        .find_map(|(i, level)| Some((i, curve.cost_at(level)?.0)))
         .unwrap_or((9, f64::INFINITY))
 }
 
@@ -127,7 +136,8 @@ fn style(name: &str) -> (Colour, f64, Shape) {
         _ if name.starts_with("ivp") => thin(PURPLE, Shape::Square),
         _ if name.starts_with("diffsol") => thin(PURPLE, Shape::Triangle),
         _ if name.starts_with("Octave") => thin(ORANGE, Shape::Square),
-        _ if name.starts_with("SUNDIALS") => thin(GREY, Shape::Square),
+        _ if name.starts_with("SUNDIALS") => thin(ORANGE, Shape::Triangle),
+        _ if name.starts_with("Moreau-Jean") => thin(SKY, Shape::Square),
         _ => Method::ALL
             .into_iter()
             .find(|method| method.name() == name)
@@ -196,41 +206,53 @@ fn line(curve: &Curve<'_>, cost: Cost) -> Line {
 }
 
 /// Two panels for each scene: error on the horizontal axis, cost on the vertical axis.
-pub fn work_precision(path: &Path, cases: &[Case], rows: &[Row], measure: Measure, cost: Cost) -> Any<()> {
+pub fn work_precision(
+    path: &Path,
+    scenes: &[(&Case, &Reference)],
+    rows: &[Row],
+    measure: Measure,
+    cost: Cost,
+) -> Any<()> {
     let (what, unit, range) = match cost {
         Cost::Time => ("time of a run", ", ms", (1e-2, 1e5)),
         Cost::Evaluations => ("evaluations of the right-hand side", "", (1e1, 1e7)),
     };
     let error = measure.name();
-    let panels = cases.iter().flat_map(|case| {
-        let both = panels(shown(curves(rows, case, measure)));
-        ["Retune", "others"].into_iter().zip(both).map(|(whose, curves)| {
-            panel(
+    let panels = scenes.iter().flat_map(|(case, reference)| {
+        let mut all = curves(rows, case, measure);
+        all.retain(|curve| cost == Cost::Evaluations || !curve.is_interpreted());
+        let floor = reference.uncertainty[measure as usize].max(FLOOR);
+        ["Retune", "others"].into_iter().zip(panels(shown(all))).map(move |(whose, curves)| {
+            let mut panel = panel(
                 &format!("{} (T = {} s): {whose}", case.label, case.to),
                 Axis::log(format!("relative error of {error}"), (1e-15, 1e1)),
                 Axis::log(format!("{what}{unit}"), range),
                 curves.iter().map(|curve| line(curve, cost)).collect(),
                 165.0,
-            )
+            );
+            shade(&mut panel, floor);
+            panel
         })
     });
     let title = format!("Error of {error} against {what}: lower left is better");
     let key = "Vermilion: Retune's hybrid. Black: the paper's ode23s. Blue, green: Retune's other methods, adaptive and of fixed step. \
-               Purple: Rust crates. Orange: GNU Octave, where it is among the best. Grey: SciPy, SUNDIALS.";
+               Purple: Rust crates. Orange: CVODE, compiled from C, and GNU Octave. Light blue: the time stepper of Moreau and Jean. Grey: SciPy.";
     let note = "Left Retune's methods, right the hybrid beside of every other program the method that served the scene best; of more than six the \
                 best six, with hybrid and ode23s. Contacts are located unless it says stepped. \
-                Hollow squares on the frame: points beyond it. All runs, failures with their reason: runs.csv.";
+                Hollow squares on the frame: points beyond it. Shaded: below the uncertainty of the reference, at least 1e-13. All runs, failures \
+                with their reason: runs.csv.";
     sheet(path, &title, &[key, note], 2, panels.collect())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::runs::Found;
+    use crate::runs::{Found, Timing};
 
     fn row(setting: f64, seconds: f64, error: f64) -> Row {
+        let time = Timing { least: seconds, spread: 0.0 };
         let found =
-            Found { e1_max: 1.0, final_state: [0.0; 4], touches: None, impacts: 0, evaluations: 1, seconds };
+            Found { e1_max: 1.0, final_state: [0.0; 4], touches: None, impacts: 0, evaluations: 1, time };
         Row {
             scene: "a",
             program: "retune".into(),
@@ -273,8 +295,8 @@ mod tests {
         let curve = curve(&rows.iter().collect::<Vec<_>>(), Measure::E1max).expect("runs");
         assert_eq!(curve.failed, 1);
         assert_eq!(curve.points.iter().map(|p| p.0).collect::<Vec<_>>(), [1e-5, 1e-4, 1e-4]);
-        assert_eq!(curve.cost_at(1e-3, true), Some((1.0, 1e-3)));
-        assert_eq!(curve.cost_at(2e-5, true), Some((3.0, 1e-5)));
-        assert_eq!(curve.cost_at(1e-7, true), None);
+        assert_eq!(curve.cost_at(1e-3), Some((1.0, 1e-3)));
+        assert_eq!(curve.cost_at(2e-5), Some((3.0, 1e-5)));
+        assert_eq!(curve.cost_at(1e-7), None);
     }
 }

@@ -1,12 +1,16 @@
 //! Retune's methods and other people's integrators on the same scenes: speed against accuracy, and where methods fail. And hunts for errors.
 //!
 //! No crate imports this one, and it is not built with the program (`just lab` lists what builds it). Other people's integrators come with the
-//! feature `integrators`. To read: `scenes`, `runs`, `reference`, then `text` (`just lab accuracy`) or `atlas` (`just lab stability`).
+//! feature `integrators`. To read: `scenes`, `runs`, `reference`, then `comparison` and `text` (`just lab accuracy`) or `atlas` (`just lab stability`).
 #![allow(missing_docs, reason = "its own programs and tests use it: what a name says is not said again")]
 
 pub mod atlas;
+#[cfg(feature = "integrators")]
+pub mod comparison;
 pub mod curves;
 pub mod hunts;
+pub mod machine;
+pub mod moreau_jean;
 pub mod motion;
 pub mod panel;
 #[cfg(feature = "integrators")]

@@ -1,7 +1,7 @@
 //! Panels of lines, each with its name beside the frame, as charts of `retune_report`.
 
 use crate::Any;
-use retune_report::colour::{BLACK, BLUE, Colour, GREEN, VERMILION};
+use retune_report::colour::{BLACK, BLUE, Colour, GREEN, GREY, VERMILION};
 use retune_report::{Axis, Chart, Dash, Layer, Mark, Shape, Sheet, Stroke, Width, svg};
 use retune_solver::Method;
 use std::fs;
@@ -77,6 +77,12 @@ pub fn panel(title: &str, x: Axis, y: Axis, lines: Vec<Line>, height: f64) -> Ch
     }
     layers.extend(names);
     Chart { title: title.to_owned(), x, y, layers, height }
+}
+
+/// Shades a panel where `x` is at most `floor`: such errors mean nothing.
+pub fn shade(panel: &mut Chart, floor: f64) {
+    let (x, y) = ((panel.x.range().0, floor), (f64::NEG_INFINITY, f64::INFINITY));
+    panel.layers.insert(0, Layer::Band { x, y, colour: GREY, opacity: 0.18 });
 }
 
 /// Writes a figure of panels with notes below them.

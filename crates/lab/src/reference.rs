@@ -35,7 +35,7 @@ fn of_a_peer(case: &Case) -> Any<Option<Found>> {
     use crate::peers::{PEERS, run};
     let dop853 = PEERS.iter().find(|peer| peer.program.starts_with("ivp") && peer.method == "DOP853");
     let dop853 = dop853.ok_or("the crate ivp has no DOP853")?;
-    Ok(Some(run(dop853, case, true, dop853.tightest)?))
+    Ok(Some(run(dop853, case, true, dop853.tightest, false)?))
 }
 
 #[cfg(not(feature = "integrators"))]

@@ -9,8 +9,7 @@ use retune_solver::{
     Contacts, Hybrid, Method, Motion, Phase, Settings, SolverError, Window, e1_max, simulate, touch_downs,
 };
 use std::fmt::Write;
-use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use std::{fs, io};
 
 /// The result of a run.
@@ -26,7 +25,18 @@ pub struct Found {
     pub impacts: usize,
     /// Evaluations of the right-hand side and its Jacobian (for the hybrid, each step counts as one).
     pub evaluations: u64,
-    pub seconds: f64,
+    pub time: Timing,
+}
+
+/// The least of the times of several runs, s, and how far their median is above it, as a share; NaN where none or one was timed.
+#[derive(Clone, Copy, Debug)]
+pub struct Timing {
+    pub least: f64,
+    pub spread: f64,
+}
+
+impl Timing {
+    pub const NONE: Self = Self { least: f64::NAN, spread: f64::NAN };
 }
 
 /// A run and its result, or the reason why it failed.
@@ -61,6 +71,26 @@ pub fn errors(found: &Found, reference: &Found, omega: f64) -> [f64; 3] {
 }
 
 impl Row {
+    /// That of a run: `way` is its program, its method and how it treats contacts.
+    pub fn of(
+        case: &Case,
+        reference: &Found,
+        (program, method, contacts): (&str, &str, &'static str),
+        setting: f64,
+        found: Result<Found, String>,
+    ) -> Self {
+        Self {
+            scene: case.name,
+            program: program.to_string(),
+            method: method.to_string(),
+            contacts,
+            setting,
+            errors: found.as_ref().map_or([f64::NAN; 3], |f| errors(f, reference, case.omega())),
+            found,
+            expected_impacts: reference.impacts,
+        }
+    }
+
     /// The name of the method with its program, unless it is Retune's.
     pub fn name(&self) -> String {
         match self.program.split(' ').next().unwrap_or_default() {
@@ -72,7 +102,7 @@ impl Row {
     /// Cost: seconds, or evaluations.
     pub fn cost(&self, in_time: bool) -> Option<f64> {
         let found = self.found.as_ref().ok()?;
-        Some(if in_time { found.seconds } else { found.evaluations as f64 })
+        Some(if in_time { found.time.least } else { found.evaluations as f64 })
     }
 
     /// Whether its setting is this one.
@@ -81,7 +111,7 @@ impl Row {
     }
 }
 
-const HEAD: &str = "scene,program,method,contacts,setting,seconds,evaluations,E1max,E1max_error,state_error,impact_time_error,impacts,\
+const HEAD: &str = "scene,program,method,contacts,setting,seconds,spread,evaluations,E1max,E1max_error,state_error,impact_time_error,impacts,\
                     expected_impacts,failure";
 
 /// The table.
@@ -93,8 +123,9 @@ pub fn csv(rows: &[Row]) -> String {
         let _ = match &row.found {
             Ok(f) => writeln!(
                 text,
-                "{:.3e},{},{:?},{:.3e},{:.3e},{:.3e},{},{},",
-                f.seconds,
+                "{:.3e},{:.3},{},{:?},{:.3e},{:.3e},{:.3e},{},{},",
+                f.time.least,
+                f.time.spread,
                 f.evaluations,
                 f.e1_max,
                 row.errors[0],
@@ -103,7 +134,7 @@ pub fn csv(rows: &[Row]) -> String {
                 f.impacts,
                 row.expected_impacts
             ),
-            Err(why) => writeln!(text, ",,,,,,,{},{}", row.expected_impacts, why.replace([',', '\n'], ";")),
+            Err(why) => writeln!(text, ",,,,,,,,{},{}", row.expected_impacts, why.replace([',', '\n'], ";")),
         };
     }
     text
@@ -126,7 +157,7 @@ pub fn parse(text: &str, scenes: &[&'static str]) -> Vec<Row> {
             touches: None,
             impacts: count("impacts") as usize,
             evaluations: count("evaluations") as u64,
-            seconds: count("seconds"),
+            time: Timing { least: count("seconds"), spread: count("spread") },
         };
         let (scene, contacts, failure) = (field("scene")?, field("contacts")?, field("failure")?);
         Some(Row {
@@ -143,20 +174,22 @@ pub fn parse(text: &str, scenes: &[&'static str]) -> Vec<Row> {
     text.lines().skip(1).filter_map(line).collect()
 }
 
-/// The shortest of several runs, s: after a warm-up 100 runs if one takes less than a millisecond, else fewer.
-pub fn shortest_of<T>(mut run: impl FnMut() -> T) -> f64 {
-    let mut timed = || {
+/// Times a run several times: after a warm-up 100 times if it takes less than a millisecond, else fewer.
+pub fn timed<T>(mut run: impl FnMut() -> T) -> Timing {
+    let mut once = || {
         let begun = Instant::now();
         std::hint::black_box(run());
-        begun.elapsed()
+        begun.elapsed().as_secs_f64()
     };
-    let wanted = match timed() {
-        t if t < Duration::from_millis(1) => 100,
-        t if t < Duration::from_millis(20) => 6,
-        t if t < Duration::from_millis(150) => 2,
-        t => return t.as_secs_f64(),
+    let count = match once() {
+        t if t < 1e-3 => 100,
+        t if t < 0.02 => 6,
+        t if t < 0.15 => 2,
+        t => return Timing { least: t, ..Timing::NONE },
     };
-    (0..wanted).map(|_| timed()).fold(Duration::MAX, Duration::min).as_secs_f64()
+    let mut times: Vec<f64> = (0..count).map(|_| once()).collect();
+    times.sort_by(f64::total_cmp);
+    Timing { least: times[0], spread: times[count / 2] / times[0] - 1.0 }
 }
 
 /// Most steps of a run.
@@ -168,19 +201,19 @@ pub fn settings(method: Method, contacts: Contacts, setting: f64) -> Settings {
 }
 
 /// All results of one run; the time is that of finding E1max alone.
-pub fn run(case: &Case, settings: &Settings, timed: bool) -> Result<Found, String> {
+pub fn run(case: &Case, settings: &Settings, is_timed: bool) -> Result<Found, String> {
     let window = Window { from: 0.0, to: case.to };
     let response = simulate(&case.scene, window, settings).map_err(|e| e.to_string())?;
     let touches = touch_downs(&case.scene, window, settings).map_err(|e| e.to_string())?;
-    let seconds =
-        if timed { shortest_of(|| e1_max(&case.scene, window, settings, f64::INFINITY)) } else { f64::NAN };
+    let time =
+        if is_timed { timed(|| e1_max(&case.scene, window, settings, f64::INFINITY)) } else { Timing::NONE };
     Ok(Found {
         e1_max: response.e1_max.value,
         final_state: response.final_state,
         impacts: touches.len(),
         touches: Some(touches.into_iter().map(|(t, _)| t).collect()),
         evaluations: methods::evaluations(settings.method, &response),
-        seconds,
+        time,
     })
 }
 
@@ -240,27 +273,32 @@ pub fn way(settings: &Settings) -> &'static str {
     own.map_or("exact", |(_, name)| name)
 }
 
-/// Tables of the runs of other programs (GNU Octave, SciPy, SUNDIALS), made by `just lab accuracy-external`.
+/// Tables of the runs of interpreted programs, made by `just lab accuracy-external`.
 const TABLES: [&str; 2] = ["tests/reference/external/octave.csv", "tests/reference/external/scipy.csv"];
 
-/// Those of a scene; none where a table is missing. The scripts give the number of contacts, not their times.
-pub fn external(root: &Path, case: &Case, reference: &Found) -> io::Result<Vec<Row>> {
-    let mut rows = Vec::new();
+/// The lines of those tables; none where one is missing.
+pub fn external() -> io::Result<String> {
+    let mut all = String::new();
     for table in TABLES {
-        let text = match fs::read_to_string(root.join(table)) {
-            Ok(text) => text,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
+        match fs::read_to_string(table) {
+            Ok(text) => all += &text,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
             Err(error) => return Err(error),
-        };
-        rows.extend(text.lines().skip(1).filter_map(|line| external_row(line, case, reference)));
+        }
     }
-    Ok(rows)
+    Ok(all)
+}
+
+/// The rows of a scene in a table of other programs, which give the number of contacts, not their times.
+pub fn of_table(table: &str, case: &Case, reference: &Found) -> Vec<Row> {
+    table.lines().filter_map(|line| external_row(line, case, reference)).collect()
 }
 
 fn external_row(line: &str, case: &Case, reference: &Found) -> Option<Row> {
     let fields: Vec<&str> = line.split(',').collect();
+    let (fields, spread) = fields.split_at_checked(13)?;
     let [program, method, scene, setting, seconds, evaluations, e1_max, x1, v1, x2, v2, impacts, failure] =
-        fields[..].try_into().ok()?;
+        fields.try_into().ok()?;
     if scene != case.name {
         return None;
     }
@@ -270,7 +308,7 @@ fn external_row(line: &str, case: &Case, reference: &Found) -> Option<Row> {
         touches: None,
         impacts: number(impacts) as usize,
         evaluations: number(evaluations) as u64,
-        seconds: number(seconds),
+        time: Timing { least: number(seconds), spread: spread.first().map_or(f64::NAN, |text| number(text)) },
     };
     if case.scene.damper.is_none() {
         (found.final_state[2], found.final_state[3]) = (0.0, 0.0);
@@ -280,14 +318,11 @@ fn external_row(line: &str, case: &Case, reference: &Found) -> Option<Row> {
         None if program.starts_with("GNU") => (method, "stepped"),
         None => (method, "located"),
     };
-    Some(Row {
-        scene: case.name,
-        program: program.trim_start_matches("GNU ").to_string(),
-        method: method.to_string(),
-        contacts,
-        setting: number(setting),
-        errors: errors(&found, reference, case.omega()),
-        found: if failure.is_empty() { Ok(found) } else { Err(failure.to_string()) },
-        expected_impacts: reference.impacts,
-    })
+    Some(Row::of(
+        case,
+        reference,
+        (program.trim_start_matches("GNU "), method, contacts),
+        number(setting),
+        if failure.is_empty() { Ok(found) } else { Err(failure.to_string()) },
+    ))
 }

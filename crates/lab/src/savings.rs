@@ -1,7 +1,8 @@
 //! Time saved by the smallest exact model of a scene against the full contact model, with equal results.
 
 use crate::Any;
-use crate::runs::shortest_of;
+use crate::records::{Record, number, records};
+use crate::runs::timed;
 use crate::scenes::{Case, Numbers, SSVI, TMD};
 use retune_model::{Coupled, Scene};
 use retune_report::colour::{BLUE, Colour, VERMILION};
@@ -13,9 +14,9 @@ use std::path::Path;
 
 /// Cost of a scene under the smallest exact model and under the full contact model.
 pub struct Saving {
-    pub label: &'static str,
+    pub label: String,
     /// The smallest exact model, in words.
-    pub model: &'static str,
+    pub model: String,
     /// Times, s: smallest, full.
     pub seconds: [f64; 2],
     /// E1max, J: smallest, full.
@@ -59,13 +60,34 @@ pub fn savings(cases: &[Case]) -> Any<Vec<Saving>> {
             SceneKind::Contact => "needs the contact model",
         };
         Ok(Saving {
-            label,
-            model,
+            label: label.to_owned(),
+            model: model.to_owned(),
             e1_max: [smallest()?.value, full()?.value],
-            seconds: [shortest_of(smallest), shortest_of(full)],
+            seconds: [timed(smallest).least, timed(full).least],
         })
     };
     subjects(cases).into_iter().map(measure).collect()
+}
+
+/// The table.
+pub fn csv(savings: &[Saving]) -> String {
+    let line = |s: &Saving| {
+        let [seconds, e1_max] = [s.seconds.map(|t| format!("{t:.3e}")), s.e1_max.map(|e| format!("{e:?}"))];
+        let texts = [&s.label, &s.model].map(|text| text.replace(',', ";"));
+        format!("{},{},{}\n", texts.join(","), seconds.join(","), e1_max.join(","))
+    };
+    let rows: String = savings.iter().map(line).collect();
+    format!("scene,model,seconds,seconds_of_full_model,E1max,E1max_of_full_model\n{rows}")
+}
+
+/// Reads [`csv`]'s table back.
+pub fn parse(table: &str) -> Vec<Saving> {
+    let of = |row: &Record<'_>| {
+        let pair = |name: &str| [number(row, name), number(row, &format!("{name}_of_full_model"))];
+        let text = |name: &str| row[name].replace(';', ",");
+        Saving { label: text("scene"), model: text("model"), seconds: pair("seconds"), e1_max: pair("E1max") }
+    };
+    records(table).iter().map(of).collect()
 }
 
 /// Time of each scene under the smallest exact model and under the full one.
@@ -74,7 +96,9 @@ pub fn chart(path: &Path, savings: &[Saving]) -> Any<()> {
     let longest = 1e6 * savings.iter().flat_map(|s| s.seconds).fold(0.0, f64::max);
     let mut layers = Vec::new();
     for (i, s) in savings.iter().enumerate() {
-        for (j, (seconds, model)) in s.seconds.into_iter().zip([s.model, "full contact model"]).enumerate() {
+        for (j, (seconds, model)) in
+            s.seconds.into_iter().zip([s.model.as_str(), "full contact model"]).enumerate()
+        {
             let (time, middle) = (1e6 * seconds, -(i as f64) + 0.2 - 0.4 * j as f64);
             let y = (middle - 0.17, middle + 0.17);
             layers.push(Layer::Band { x: (0.0, time), y, colour: COLOURS[j], opacity: 1.0 });
@@ -82,7 +106,7 @@ pub fn chart(path: &Path, savings: &[Saving]) -> Any<()> {
             layers.push(Layer::Text { at, text: format!("{time:.1}  {model}"), stand: Stand::Right });
         }
     }
-    let names = savings.iter().enumerate().map(|(i, s)| (-(i as f64), s.label.to_owned())).collect();
+    let names = savings.iter().enumerate().map(|(i, s)| (-(i as f64), s.label.clone())).collect();
     let count = savings.len() as f64;
     let chart = Chart {
         title: String::new(),

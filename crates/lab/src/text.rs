@@ -1,6 +1,7 @@
 //! The results of the charts in words and numbers: `results/accuracy/README.md`.
 
 use crate::curves::{Curve, Measure, curves};
+use crate::moreau_jean::STEPPER;
 use crate::reference::Reference;
 use crate::runs::{Row, way};
 use crate::savings::Saving;
@@ -38,6 +39,7 @@ fn factor(f: f64) -> String {
 
 /// The whole text.
 pub fn text(
+    machine: &str,
     cases: &[Case],
     references: &[Reference],
     rows: &[Row],
@@ -45,42 +47,66 @@ pub fn text(
     chaos: &[Statistics],
 ) -> String {
     let mut out = String::from(
-        "# Speed against accuracy\n\nWritten by `just lab accuracy` from `runs.csv`, where every run stands, failures with their reason.\n\n\
-         ![error of E1max against time](time.svg)\n",
+        "# Speed against accuracy\n\nWritten by `just lab accuracy` from `runs.csv`, where every run stands, failures with their reason.\n\n",
     );
+    made(&mut out, machine, rows);
+    out += "\n![error of E1max against time](time.svg)\n";
     in_short(&mut out, cases, rows);
     defaults(&mut out, cases, rows);
     paper_defaults(&mut out, cases, rows);
-    out += "\n## How to read the charts\n\nAn error counts only if no tighter setting of the same method exceeds it: a lucky run does not. Each \
-        method is shown with the way to meet contacts, located or stepped over, that serves it better. A run's time is the least \
-        of several. Retune's contains the search for E1max, that of the Rust crates does not. Evaluations are of right-hand sides \
-        and Jacobians; the hybrid's exact flight steps count as one each. GNU Octave, SciPy and SUNDIALS ran out of process (`just lab accuracy-external`); \
-        their time contains that of their interpreted right-hand sides. Where a program has no dense output (Octave, CVODE), E1 between its \
-        steps is that of the quintic that meets position, velocity and acceleration; from SciPy's dense output E1max is read to about 1e-8.\n\n\
-        ![error of E1max against evaluations](evaluations.svg)\n![error of the final state against time](state.svg)\n";
+    out += HOW_TO_READ;
     reference(&mut out, cases, references);
     beyond(&mut out, chaos);
-    for level in [1e-3, 1e-6, 1e-9] {
-        cheapest(&mut out, cases, rows, level);
-    }
+    digits(&mut out, cases, rows);
+    stepper(&mut out, cases, rows);
     models(&mut out, savings);
     out
 }
 
-/// The costs of the best curves at a level.
-fn costs<'a>(curves: &'a [Curve<'a>], level: f64, in_time: bool) -> Vec<(f64, &'a Curve<'a>)> {
-    let mut costs: Vec<_> = curves.iter().filter_map(|c| Some((c.cost_at(level, in_time)?.0, c))).collect();
+const HOW_TO_READ: &str = "\n## How to read the charts\n\nAn error counts only if no tighter setting of the same method exceeds it: a lucky run does not. Each \
+    method is shown with the way to meet contacts, located or stepped over, that serves it better. A run's time is the least \
+    of several. Retune's contains the search for E1max, that of all others does not. Evaluations are of right-hand sides \
+    and Jacobians; the hybrid's exact flight steps count as one each. Every timed program is compiled, with its right-hand side: the Rust crates as part of `just lab accuracy`, \
+    CVODE from `tests/reference/external/cvode_methods.c`. GNU Octave and SciPy (`just lab accuracy-external`) interpret their right-hand sides, so that their times would measure \
+    an interpreter: they stand among the evaluations alone. Octave has no dense output: E1 between its \
+    steps is that of the quintic that meets position, velocity and acceleration; from SciPy's dense output E1max is read to about 1e-8. \
+    Between rigid walls contacts are always located, but by the time stepper; a rebound slower than 1e-6 m/s ends a chatter there.\n\n\
+    ![error of E1max against evaluations](evaluations.svg)\n![error of the final state against time](state.svg)\n";
+
+/// Machine, compilers, commit, and how far times scatter.
+fn made(out: &mut String, machine: &str, rows: &[Row]) {
+    let spreads = rows.iter().filter_map(|row| Some(row.found.as_ref().ok()?.time.spread));
+    let mut spreads: Vec<f64> = spreads.filter(|spread| spread.is_finite()).collect();
+    spreads.sort_by(f64::total_cmp);
+    if !rows.iter().any(|row| row.program.starts_with("SUNDIALS")) {
+        *out += "CVODE is left out: there was no C compiler, or no SUNDIALS.\n\n";
+    }
+    let share =
+        |of: f64| 100.0 * spreads.get((of * spreads.len() as f64) as usize).copied().unwrap_or(f64::NAN);
+    let _ = writeln!(
+        out,
+        "Times: {machine}. The median of a run's repetitions is above their least, which is its time, by {:.0} % in half of the runs, and by {:.0} % at most in nine of ten \
+         (column `spread`). Errors, counts and evaluations do not depend on the machine's speed: `just lab accuracy check` runs every row again, `retune verify results/accuracy` a sample.",
+        share(0.5),
+        share(0.9)
+    );
+}
+
+/// The least times to an error of compiled programs, ascending, s.
+fn costs<'a>(curves: &'a [Curve<'a>], level: f64) -> Vec<(f64, &'a Curve<'a>)> {
+    let compiled = curves.iter().filter(|c| !c.is_interpreted());
+    let mut costs: Vec<_> = compiled.filter_map(|c| Some((c.cost_at(level)?.0, c))).collect();
     costs.sort_by(|a, b| a.0.total_cmp(&b.0));
     costs
 }
 
 fn in_short(out: &mut String, cases: &[Case], rows: &[Row]) {
     *out += "\n## In short\n\n";
-    for level in [1e-3, 1e-6, 1e-9] {
+    for level in LEVELS {
         let (mut next, mut lost, mut paper, mut never) = (Vec::new(), Vec::new(), Vec::new(), 0);
         for case in cases {
             let curves = curves(rows, case, Measure::E1max);
-            let costs = costs(&curves, level, true);
+            let costs = costs(&curves, level);
             let Some(&(hybrid, _)) = costs.iter().find(|c| c.1.name == "hybrid") else { continue };
             let rival = costs.iter().find(|c| c.1.name != "hybrid");
             match rival.map(|(cost, curve)| (cost / hybrid, curve)) {
@@ -223,30 +249,80 @@ fn beyond(out: &mut String, chaos: &[Statistics]) {
     }
 }
 
-fn cheapest(out: &mut String, cases: &[Case], rows: &[Row], level: f64) {
-    let _ = writeln!(
-        out,
-        "\n## Who reaches a relative error of E1max of {level:.0e}, and for what\n\nTime, with the factor over the hybrid's: the five fastest, then the paper's method and the best of each other program.\n"
-    );
+/// Errors whose costs are compared.
+const LEVELS: [f64; 3] = [1e-3, 1e-6, 1e-9];
+
+fn digits(out: &mut String, cases: &[Case], rows: &[Row]) {
+    *out += "\n## What correct digits cost\n\nLeast time of a run to a relative error of E1max, ms, with the factor over the hybrid's; then the factor by which each digit between 1e-3 and 1e-9 \
+        multiplies the time. \\*: faster than the hybrid. A dash: no setting that was run gets there.\n\n\
+        | scene | error | hybrid | best other | next | ode23s | CVODE |\n| --- | --- | ---: | --- | --- | ---: | ---: |\n";
     for case in cases {
         let curves = curves(rows, case, Measure::E1max);
-        let costs = costs(&curves, level, true);
-        let Some(&(hybrid, _)) = costs.iter().find(|c| c.1.name == "hybrid") else { continue };
-        let show = |(cost, c): &(f64, &Curve<'_>)| {
-            format!("{} {} ({} ×)", c.name, time(*cost), factor(cost / hybrid))
-        };
-        let mut list: Vec<String> = costs.iter().take(5).map(show).collect();
-        let rest = &costs[costs.len().min(5)..];
-        for wanted in ["ode23s", "Octave ode23s", "Octave", "SciPy", "SUNDIALS"] {
-            let is = |c: &Curve<'_>| c.name == wanted || (c.name != "ode23s" && c.program() == wanted);
-            match rest.iter().find(|c| is(c.1)) {
-                Some(found) if !list.contains(&show(found)) => list.push(show(found)),
-                Some(_) => {}
-                None if costs.iter().any(|c| is(c.1)) || !curves.iter().any(is) => {}
-                None => list.push(format!("{wanted} not, as far as it was run")),
-            }
+        for level in LEVELS {
+            let costs = costs(&curves, level);
+            let hybrid = costs.iter().find(|c| c.1.name == "hybrid").map_or(f64::NAN, |c| c.0);
+            let show = |&&(cost, _): &&(f64, &Curve<'_>)| {
+                format!(
+                    "{:.3} ({}{})",
+                    1e3 * cost,
+                    factor(cost / hybrid),
+                    if cost < hybrid { " \\*" } else { "" }
+                )
+            };
+            let named = |c: Option<&(f64, &Curve<'_>)>| {
+                c.map_or("-".into(), |c| format!("{} {}", c.1.name, show(&c)))
+            };
+            let mut others = costs.iter().filter(|c| c.1.name != "hybrid");
+            let (first, second) = (named(others.next()), named(others.next()));
+            let of =
+                |is: fn(&Curve<'_>) -> bool| costs.iter().find(|c| is(c.1)).map_or("-".into(), |c| show(&c));
+            let (paper, cvode) = (of(|c| c.name == "ode23s"), of(|c| c.program() == "SUNDIALS"));
+            let _ = writeln!(
+                out,
+                "| {} | {level:.0e} | {:.3} | {first} | {second} | {paper} | {cvode} |",
+                case.label,
+                1e3 * hybrid
+            );
         }
-        let _ = writeln!(out, "- {}: {}.", case.label, list.join(", "));
+        let growth = |is: fn(&Curve<'_>) -> bool| {
+            let at = |level| {
+                let costs = curves.iter().filter(|c| is(c)).filter_map(|c| c.cost_at(level));
+                costs.map(|c| c.0).reduce(f64::min)
+            };
+            let grown = Some((at(LEVELS[2])? / at(LEVELS[0])?).powf(1.0 / 6.0));
+            grown.map(|factor| format!("× {factor:.2}"))
+        };
+        let text = |is| growth(is).unwrap_or("-".into());
+        let (hybrid, paper, cvode) =
+            (text(|c| c.name == "hybrid"), text(|c| c.name == "ode23s"), text(|c| c.program() == "SUNDIALS"));
+        let other = text(|c| c.name != "hybrid" && !c.is_interpreted());
+        let _ = writeln!(out, "| {} | a digit | {hybrid} | {other} | | {paper} | {cvode} |", case.label);
+    }
+}
+
+fn stepper(out: &mut String, cases: &[Case], rows: &[Row]) {
+    *out += "\n## Rigid walls by time stepping\n\nThe scheme of Moreau and Jean, that of Siconos (θ = 1/2, Newton's restitution, no events), written here in Rust, beside the hybrid at its loosest rtol, both between the \
+        same rigid walls: Hertz's contacts are another model, to which it does not apply. Its order is one where there are impacts; chatter costs it nothing.\n\n\
+        | scene | step, s | time, ms | error of E1max | of the final state | time of the hybrid, ms | its error of E1max |\n| --- | ---: | ---: | ---: | ---: | ---: | ---: |\n";
+    for case in cases {
+        let of = |name: &'static str| {
+            rows.iter().filter(move |r| r.scene == case.name && r.name().starts_with(name))
+        };
+        let Some(hybrid) = of("hybrid").max_by(|a, b| a.setting.total_cmp(&b.setting)) else { continue };
+        for row in of(STEPPER) {
+            let time = |row: &Row| 1e3 * row.cost(true).unwrap_or(f64::NAN);
+            let _ = writeln!(
+                out,
+                "| {} | {:.0e} | {:.3} | {:.0e} | {:.0e} | {:.3} | {:.0e} |",
+                case.label,
+                row.setting,
+                time(row),
+                row.errors[0],
+                row.errors[1],
+                time(hybrid),
+                hybrid.errors[0]
+            );
+        }
     }
 }
 

@@ -1,143 +1,102 @@
-//! `just lab accuracy`: every method on every scene at every tolerance, into `results/accuracy/`; `just lab accuracy manifest` writes only its
-//! manifest, and `just lab accuracy pictures` only the charts of its `runs.csv`, and the manifest.
+//! `just lab accuracy`: every method on every scene at every tolerance, into `results/accuracy/`; `just lab accuracy draw` writes text, charts and
+//! manifest anew from its tables, and `just lab accuracy check` runs every row again and compares all but its time.
 #![allow(clippy::print_stderr)]
 
+use rayon::prelude::*;
 use retune_jobs::methods;
 use retune_lab::curves::{Cost, Measure, work_precision};
 use retune_lab::reference::{REFERENCE, Reference};
-use retune_lab::runs::{self, Found, Row, csv, errors, parse};
+use retune_lab::runs::{self, Row, csv, external, of_table, parse};
 use retune_lab::scenes::{Case, cases};
-use retune_lab::{Any, decades, peers, savings, sealed, statistics, system, text};
+use retune_lab::{Any, comparison, machine, savings, sealed, statistics, system, text};
 use retune_model::Side;
-use retune_solver::Method;
 use std::fs;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::process::{Command, Stdio};
 
-/// A method's series of settings ends with the first whose runs together take longer than this.
-const PATIENCE: Duration = Duration::from_millis(2000);
+const SCENES: &str = "tests/reference/external/scenes.json";
+/// CVODE on those scenes, compiled by the recipe from C.
+const CVODE: &str = "target/cvode";
 
 fn main() -> Any<()> {
     let folder = Path::new("results/accuracy");
-    fs::create_dir_all(folder)?;
     let cases = cases();
-    let seal = || {
-        let plan = methods::plan(REFERENCE, runs::MOST_STEPS, std::iter::empty());
-        sealed::seal(folder, &methods::ACCURACY, plan, cases.iter())
-    };
-    if std::env::args().nth(1).as_deref() == Some("manifest") {
-        return seal();
-    }
-    let table = folder.join("runs.csv");
-    let names: Vec<&'static str> = cases.iter().map(|case| case.name).collect();
-    if std::env::args().nth(1).as_deref() == Some("pictures") {
-        pictures(folder, &cases, &parse(&fs::read_to_string(&table)?, &names))?;
-        return seal();
-    }
-    fs::write("tests/reference/external/scenes.json", scenes_json(&cases)?)?;
     let references = cases.iter().map(Reference::of).collect::<Result<Vec<_>, _>>()?;
-    // `accuracy draw`: updates the runs of other programs and the pictures from the existing runs.
-    let mut rows: Vec<Row> = if std::env::args().nth(1).as_deref() == Some("draw") {
-        let outside = |row: &Row| ["Octave", "SciPy", "SUNDIALS"].iter().any(|p| row.program.starts_with(p));
-        parse(&fs::read_to_string(&table)?, &names).into_iter().filter(|row| !outside(row)).collect()
-    } else {
-        let each = cases.iter().zip(&references);
-        each.flat_map(|(case, reference)| {
-            eprintln!("{}", case.name);
-            [own_rows(case, &reference.found), peer_rows(case, &reference.found)].concat()
-        })
-        .collect()
-    };
-    for (case, reference) in cases.iter().zip(&references) {
-        rows.extend(runs::external(Path::new("."), case, &reference.found)?);
+    match std::env::args().nth(1).as_deref() {
+        None => measure(folder, &cases, &references)?,
+        Some("draw") => {}
+        Some("check") => return check(folder, &cases, &references),
+        Some(other) => return Err(format!("accuracy {other}: nothing, draw or check").into()),
     }
-    fs::write(table, csv(&rows))?;
-    let savings = savings::savings(&cases)?;
-    fs::write(
-        folder.join("README.md"),
-        text::text(&cases, &references, &rows, &savings, &statistics::all()?),
-    )?;
-    pictures(folder, &cases, &rows)?;
-    savings::chart(&folder.join("models.svg"), &savings)?;
-    seal()
+    draw(folder, &cases, &references)
 }
 
-/// The charts of error against cost.
-fn pictures(folder: &Path, cases: &[Case], rows: &[Row]) -> Any<()> {
+/// Writes the tables.
+fn measure(folder: &Path, cases: &[Case], references: &[Reference]) -> Any<()> {
+    fs::create_dir_all(folder)?;
+    fs::write(folder.join(machine::NAME), format!("{:#}\n", machine::this()))?;
+    fs::write(SCENES, scenes_json(cases)?)?;
+    let cvode = Command::new(CVODE).arg(SCENES).stderr(Stdio::null()).output();
+    let cvode = cvode.map_or_else(
+        |_| {
+            eprintln!("CVODE is left out: there is no {CVODE}");
+            String::new()
+        },
+        |output| String::from_utf8_lossy(&output.stdout).into_owned(),
+    );
+    let interpreted = external()?;
+    let mut rows = Vec::new();
+    for (case, reference) in cases.iter().zip(references) {
+        eprintln!("{}", case.name);
+        rows.extend(comparison::rows(case, &reference.found));
+        rows.extend(
+            [&cvode, &interpreted].into_iter().flat_map(|table| of_table(table, case, &reference.found)),
+        );
+    }
+    fs::write(folder.join("runs.csv"), csv(&rows))?;
+    Ok(fs::write(folder.join("models.csv"), savings::csv(&savings::savings(cases)?))?)
+}
+
+/// The rows of the table.
+fn rows(folder: &Path, cases: &[Case]) -> Any<Vec<Row>> {
+    let names: Vec<&'static str> = cases.iter().map(|case| case.name).collect();
+    Ok(parse(&fs::read_to_string(folder.join("runs.csv"))?, &names))
+}
+
+/// Writes text, charts and manifest from the tables.
+fn draw(folder: &Path, cases: &[Case], references: &[Reference]) -> Any<()> {
+    let (rows, savings) =
+        (rows(folder, cases)?, savings::parse(&fs::read_to_string(folder.join("models.csv"))?));
+    let text = text::text(&machine::words(folder)?, cases, references, &rows, &savings, &statistics::all()?);
+    fs::write(folder.join("README.md"), text)?;
+    let scenes: Vec<(&Case, &Reference)> = cases.iter().zip(references).collect();
     for (name, measure, cost) in [
         ("time", Measure::E1max, Cost::Time),
         ("evaluations", Measure::E1max, Cost::Evaluations),
         ("state", Measure::State, Cost::Time),
     ] {
-        work_precision(&folder.join(format!("{name}.svg")), cases, rows, measure, cost)?;
+        work_precision(&folder.join(format!("{name}.svg")), &scenes, &rows, measure, cost)?;
     }
-    Ok(())
+    savings::chart(&folder.join("models.svg"), &savings)?;
+    let plan = methods::plan(REFERENCE, runs::MOST_STEPS, std::iter::empty());
+    sealed::seal(folder, &methods::ACCURACY, plan, cases.iter())
 }
 
-fn row(
-    case: &Case,
-    reference: &Found,
-    program: &str,
-    method: &str,
-    contacts: &'static str,
-    setting: f64,
-    found: Result<Found, String>,
-) -> Row {
-    let errors = found.as_ref().map_or([f64::NAN; 3], |f| errors(f, reference, case.omega()));
-    Row {
-        scene: case.name,
-        program: program.to_string(),
-        method: method.to_string(),
-        contacts,
-        setting,
-        found,
-        errors,
-        expected_impacts: reference.impacts,
+/// Runs every row again, and tells those of which errors, counts or evaluations differ.
+fn check(folder: &Path, cases: &[Case], references: &[Reference]) -> Any<()> {
+    let rows = rows(folder, cases)?;
+    let changed = |row: &Row| {
+        let (case, reference) = cases.iter().zip(references).find(|(case, _)| case.name == row.scene)?;
+        comparison::change(row, case, &reference.found)
+    };
+    let changes: Vec<String> = rows.par_iter().filter_map(changed).collect();
+    changes.iter().for_each(|change| eprintln!("{change}"));
+    eprintln!("{} rows, {} changed", rows.len(), changes.len());
+    if changes.is_empty() {
+        Ok(())
+    } else {
+        Err("results/accuracy/runs.csv is not what the code makes".into())
     }
-}
-
-fn own_rows(case: &Case, reference: &Found) -> Vec<Row> {
-    let steps: Vec<f64> = (3..=10).map(|k| 10f64.powf(-f64::from(k) / 2.0)).collect();
-    let mut rows = Vec::new();
-    for method in Method::ALL {
-        let values = match method {
-            Method::Hybrid | Method::Dop853 => decades(2, 12),
-            Method::Ode45 => decades(2, 11),
-            Method::Ode23 | Method::Ode23s => decades(2, 8),
-            Method::Rk4 | Method::Euler => steps.clone(),
-        };
-        for &(contacts, way) in runs::ways(method) {
-            for &value in &values {
-                let begun = Instant::now();
-                let found = runs::run(case, &runs::settings(method, contacts, value), true);
-                rows.push(row(case, reference, "retune", method.name(), way, value, found));
-                if begun.elapsed() > PATIENCE {
-                    break;
-                }
-            }
-        }
-    }
-    rows
-}
-
-fn peer_rows(case: &Case, reference: &Found) -> Vec<Row> {
-    let mut rows = Vec::new();
-    for peer in &peers::PEERS {
-        for (located, way) in [(true, "located"), (false, "stepped")] {
-            for rtol in (3..=12).step_by(if located { 1 } else { 3 }).map(|k| 10f64.powi(-k)) {
-                if rtol < 0.5 * peer.tightest {
-                    break;
-                }
-                let begun = Instant::now();
-                let found = peers::run(peer, case, located, rtol);
-                rows.push(row(case, reference, peer.program, peer.method, way, rtol, found));
-                if begun.elapsed() > PATIENCE {
-                    break;
-                }
-            }
-        }
-    }
-    rows
 }
 
 /// The scenes as plain numbers for other programs.

@@ -1,0 +1,47 @@
+//! The machine, the compilers and the commit behind measured times: `machine.json` beside them.
+
+use crate::Any;
+use serde_json::{Value, json};
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// Its file.
+pub const NAME: &str = "machine.json";
+
+/// The first line that a command prints; none where there is no such command.
+fn said(program: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(arguments).output().ok()?;
+    Some(String::from_utf8_lossy(&output.stdout).lines().next()?.to_owned())
+}
+
+/// What it is now. The load is that of the last minute: above some 0.3 before a start, others are at work.
+pub fn this() -> Value {
+    let system = |file: &str| fs::read_to_string(Path::new("/proc").join(file)).unwrap_or_default();
+    let processor = system("cpuinfo").lines().find_map(|line| {
+        Some(line.strip_prefix("model name")?.trim_start_matches([' ', '\t', ':']).to_owned())
+    });
+    json!({
+        "processor": processor,
+        "cores": std::thread::available_parallelism().map_or(1, usize::from),
+        "load": system("loadavg").split(' ').next(),
+        "rustc": said("rustc", &["--version"]),
+        "cc": said("cc", &["--version"]),
+        "commit": said("git", &["describe", "--always", "--dirty"]),
+    })
+}
+
+/// Of a directory of results, in words.
+pub fn words(folder: &Path) -> Any<String> {
+    let machine: Value = serde_json::from_str(&fs::read_to_string(folder.join(NAME))?)?;
+    let text = |name: &str| machine[name].as_str().unwrap_or("not known").to_owned();
+    Ok(format!(
+        "{}, {} cores, load {} at the start; {}; {}; commit {}",
+        text("processor"),
+        machine["cores"],
+        text("load"),
+        text("rustc"),
+        text("cc"),
+        text("commit")
+    ))
+}
