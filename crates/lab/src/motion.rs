@@ -21,7 +21,7 @@ pub enum Acting {
 
 /// A rebound from a rigid wall slower than this, m/s, is the end of a chatter if the wall can hold the damper: the bounces left out take it
 /// some 1e-12 m. Slower bounces are lost in the rounding of positions.
-pub const SLOW: f64 = 1e-6;
+pub const SLOW: f64 = 1e-10;
 
 /// The right-hand side of a scene with four components (without a damper the last two are constant).
 pub struct Equations {

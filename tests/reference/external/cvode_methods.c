@@ -21,7 +21,7 @@
 
 enum { FLIGHT, TOUCHING, HELD };
 static const int MOST_EVENTS = 10000, MOST_EVALUATIONS = 20000000;
-static const double SLOW = 1e-6;    /* m/s: a slower rebound ends a chatter */
+static const double SLOW = 1e-10;   /* m/s: a slower rebound ends a chatter */
 static const double PATIENCE = 2.0; /* s: tighter tolerances of a method that took longer are left out */
 
 typedef struct {
