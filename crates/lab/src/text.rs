@@ -70,7 +70,7 @@ const HOW_TO_READ: &str = "\n## How to read the charts\n\nAn error counts only i
     CVODE from `tests/reference/external/cvode_methods.c`. GNU Octave and SciPy (`just lab accuracy-external`) interpret their right-hand sides, so that their times would measure \
     an interpreter: they stand among the evaluations alone. Octave has no dense output: E1 between its \
     steps is that of the quintic that meets position, velocity and acceleration; from SciPy's dense output E1max is read to about 1e-8. \
-    Between rigid walls contacts are always located, but by the time stepper; a rebound slower than 1e-6 m/s ends a chatter there.\n\n\
+    Between rigid walls contacts are always located, but by the time stepper.\n\n\
     ![error of E1max against evaluations](evaluations.svg)\n![error of the final state against time](state.svg)\n";
 
 /// Machine, compilers, commit, and how far times scatter.
