@@ -15,13 +15,7 @@ pub enum Acting {
     None,
     /// One wall's, while the damper presses into it.
     Only(Side),
-    /// A rigid wall's that holds the damper after a chatter.
-    Held(Side),
 }
-
-/// A rebound from a rigid wall slower than this, m/s, is the end of a chatter if the wall can hold the damper: the bounces left out take it
-/// some 1e-12 m. Slower bounces are lost in the rounding of positions.
-pub const SLOW: f64 = 1e-10;
 
 /// The right-hand side of a scene with four components (without a damper the last two are constant).
 pub struct Equations {
@@ -66,10 +60,6 @@ impl Equations {
                 let force = coupled.contact_forces(y)[side as usize];
                 coupled.derivative_under(excitation, y, -side.sign() * force)
             }
-            Acting::Held(_) => {
-                let a = coupled.held_acceleration(excitation, y);
-                [y[1], a, y[1], a]
-            }
         }
     }
 
@@ -82,62 +72,49 @@ impl Equations {
             (0..2).for_each(|i| (0..2).for_each(|j| rows[i][j] = a[(i, j)]));
             return rows;
         };
-        let a = match self.acting {
-            Acting::None => coupled.linear_part().0,
-            Acting::Held(_) => coupled.held_linear_part().0,
-            _ => coupled.jacobian(y),
-        };
+        let a = if self.acting == Acting::None { coupled.linear_part().0 } else { coupled.jacobian(y) };
         std::array::from_fn(|i| std::array::from_fn(|j| a[(i, j)]))
     }
 
     /// The event functions of the phase: it ends when one of them falls through zero.
-    pub fn open(&self, t: f64, y: &[f64; 4]) -> [f64; 2] {
+    pub fn open(&self, y: &[f64; 4]) -> [f64; 2] {
         let Some(coupled) = &self.coupled else { return [1.0; 2] };
         let z = coupled.indentation(y);
         match self.acting {
             Acting::Any => [1.0; 2],
             Acting::None => [-z[0], -z[1]],
             Acting::Only(side) => [z[side as usize], 1.0],
-            Acting::Held(side) => [holding(coupled, side, t, y), 1.0],
         }
     }
 
     /// Changes the phase at an event, slightly (1e-15 m) beyond the wall; true if it was a touch-down. A rigid wall throws the damper back
-    /// at once, or holds it.
-    pub fn change(&mut self, t: f64, y: &mut [f64; 4]) -> bool {
-        let Some(coupled) = &self.coupled else { return false };
-        let open = self.open(t, y);
+    /// at once.
+    pub fn change(&mut self, y: &mut [f64; 4]) -> bool {
+        let open = self.open(y);
         let nearest = if open[0] <= open[1] { Side::Primary } else { Side::Obstacle };
-        let (next, side, touched) = match (self.acting, coupled.restitution()) {
-            (Acting::Held(side) | Acting::Only(side), _) => (Acting::None, side, false),
-            (_, None) => (Acting::Only(nearest), nearest, true),
-            (_, Some(e)) => {
-                *y = coupled.struck(e, y);
-                let caught = coupled.caught(nearest, y);
-                if (y[3] - y[1]).abs() <= SLOW && holding(coupled, nearest, t, &caught) >= 0.0 {
-                    *y = caught;
-                    (Acting::Held(nearest), nearest, true)
-                } else {
-                    (Acting::None, nearest, true)
-                }
-            }
+        if let Some((coupled, e)) = self.coupled.as_ref().and_then(|c| Some((c, c.restitution()?))) {
+            *y = coupled.struck(e, y);
+            y[2] = y[0] + coupled.wall(nearest) - nearest.sign() * 1e-15;
+            return true;
+        }
+        let (next, direction) = match self.acting {
+            Acting::Only(side) => (Acting::None, -side.sign()),
+            _ => (Acting::Only(nearest), nearest.sign()),
         };
-        if !matches!(next, Acting::Held(_)) {
-            let inward = if next == Acting::None { -1.0 } else { 1.0 };
-            y[2] = y[0] + coupled.wall(side) + inward * side.sign() * 1e-15;
+        if let (Some(coupled), Acting::Only(side)) =
+            (&self.coupled, if next == Acting::None { self.acting } else { next })
+        {
+            y[2] = y[0] + coupled.wall(side) + direction * 1e-15;
         }
         self.acting = next;
-        touched
+        next != Acting::None
     }
 
     /// `[E1, dE1/dt, d²E1/dt²]`.
     fn energy(&self, t: f64, y: &[f64; 4]) -> [f64; 3] {
-        match (&self.coupled, self.acting) {
-            // Exactly on the wall, as the model knows a damper that is held.
-            (Some(coupled), Acting::Held(side)) => coupled
-                .primary_energy_rates(coupled.excitation(t), &[y[0], y[1], y[0] + coupled.wall(side), y[1]]),
-            (Some(coupled), _) => coupled.primary_energy_rates(coupled.excitation(t), y),
-            (None, _) => self.bare.primary_energy_rates(self.bare.excitation(t), &[y[0], y[1]]),
+        match &self.coupled {
+            Some(coupled) => coupled.primary_energy_rates(coupled.excitation(t), y),
+            None => self.bare.primary_energy_rates(self.bare.excitation(t), &[y[0], y[1]]),
         }
     }
 
@@ -145,11 +122,6 @@ impl Equations {
     fn pressed(&self, y: &[f64; 4]) -> [bool; 2] {
         self.coupled.as_ref().map_or([false; 2], |c| c.indentation(y).map(|z| z > 0.0))
     }
-}
-
-/// The force between a rigid wall and the damper that it holds, N.
-fn holding(coupled: &Coupled, side: Side, t: f64, y: &[f64; 4]) -> f64 {
-    coupled.holding_force(side, coupled.held_acceleration(coupled.excitation(t), y))
 }
 
 /// The largest E1 and the touch-downs of a motion that is given point by point.

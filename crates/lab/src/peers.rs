@@ -77,7 +77,7 @@ fn follow(
         if !event || t >= case.to {
             return Ok((y, equations.evaluations.get()));
         }
-        let touched = equations.change(t, &mut y);
+        let touched = equations.change(&mut y);
         if let (true, Some(track)) = (touched, track.as_deref_mut()) {
             track.touches.push(t);
         }

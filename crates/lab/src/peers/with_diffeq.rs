@@ -26,8 +26,8 @@ impl Event<f64, State> for Opening<'_> {
     fn config(&self) -> EventConfig {
         EventConfig::new(CrossingDirection::Negative, Some(1))
     }
-    fn event(&self, t: f64, y: &State) -> f64 {
-        let [a, b] = self.0.open(t, y);
+    fn event(&self, _t: f64, y: &State) -> f64 {
+        let [a, b] = self.0.open(y);
         a.min(b)
     }
 }
@@ -53,7 +53,7 @@ impl Solout<f64, State> for Control<'_, '_> {
         I: Interpolation<f64, State> + ?Sized,
     {
         if let (Some(track), true) = (self.track.as_deref_mut(), t > self.shown) {
-            let open = self.equations.open(t, y);
+            let open = self.equations.open(y);
             // A step beyond the end of the phase is cut by the event, and passed on up to there.
             if open[0] >= 0.0 && open[1] >= 0.0 {
                 track.step(self.equations, [self.shown, t], |s| {

@@ -78,8 +78,8 @@ macro_rules! method {
                 let solver = problem.$solver::<NalgebraLU<f64>>().map_err(text)?;
                 return march(solver, equations, to, track);
             }
-            let root = |y: &[f64], _p: &[f64], t: f64, out: &mut [f64]| {
-                out.copy_from_slice(&equations.open(t, &state(y)))
+            let root = |y: &[f64], _p: &[f64], _t: f64, out: &mut [f64]| {
+                out.copy_from_slice(&equations.open(&state(y)))
             };
             let mut problem = builder.root(root, 2).build().map_err(text)?;
             problem.ode_options.max_nonlinear_solver_failures = 1_000_000;

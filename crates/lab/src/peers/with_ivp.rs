@@ -18,8 +18,8 @@ impl FirstOrderSystem for Equations {
             }
         }
     }
-    fn events(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        out.copy_from_slice(&self.open(t, &state(y)));
+    fn events(&self, _t: f64, y: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(&self.open(&state(y)));
     }
     fn n_events(&self) -> usize {
         if self.acting == Acting::Any { 0 } else { 2 }
