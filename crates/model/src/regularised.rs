@@ -19,6 +19,7 @@ pub(crate) mod bounds;
 use crate::loss::{Law, Restoring, Stage};
 use crate::polynomial::{TERMS as WAVE, polynomial};
 use crate::{Coupled, Excitation, Side};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A regularised state: `[q, w, x1, v1, t]` (√m, m/s, m, m/s, s), with `t` the time since touch-down.
@@ -44,8 +45,9 @@ pub struct RegularisedContact {
     restoring: Option<Arc<Restoring>>, // the law in its place
     stretch: f64,  // sign (wall - D): the spring's stretch at touch-down, towards the wall
     since: f64,    // the time at which the excitation was set
-    cos: [f64; WAVE], // Taylor coefficients of P cos ωt and P sin ωt about that time
-    sin: [f64; WAVE],
+    is_far: bool,  // whether the coefficients beyond the first WAVE are in use
+    cos: [[f64; WAVE]; 2], // Taylor coefficients of P cos ωt and P sin ωt about that time
+    sin: [[f64; WAVE]; 2],
 }
 
 impl Coupled {
@@ -76,8 +78,9 @@ impl Coupled {
             restoring,
             stretch: side.sign() * (self.wall(side) - self.rest_distance()),
             since: 0.0,
-            cos: [0.0; WAVE],
-            sin: [0.0; WAVE],
+            is_far: false,
+            cos: [[0.0; WAVE]; 2],
+            sin: [[0.0; WAVE]; 2],
         }
     }
 }
@@ -141,19 +144,54 @@ impl RegularisedContact {
     /// `0.05⁸ / 8! = 1e-15` of the force.
     pub const TURN: f64 = 0.05;
 
+    /// The same after [`Self::carry_excitation`]: below `0.5¹⁶ / 16! = 1e-18`.
+    const FAR_TURN: f64 = 0.5;
+
     /// Sets the force at time `t` (s, since touch-down); it is exact while `ω |t' - t| <= TURN`.
     pub fn set_excitation(&mut self, t: f64, [cos, sin]: Excitation) {
-        (self.since, self.cos[0], self.sin[0]) = (t, cos, sin);
-        for k in 1..WAVE {
+        (self.since, self.is_far) = (t, false);
+        (self.cos[0][0], self.sin[0][0]) = (cos, sin);
+        self.expand(1..WAVE);
+    }
+
+    /// Whether the wall is so soft that the force turns by some 2 rad in half a swing of the damper on it, about the depth to which the
+    /// force's amplitude presses: steps to the first terms of the force are then shorter than a contact needs.
+    pub fn is_soft(&self) -> bool {
+        let stiffness = self.hertz[0] / self.primary[0];
+        let swing = (1.5 * self.hertz[1] * (self.force[0] / stiffness).cbrt()).sqrt();
+        swing < 1.5 * self.frequency()
+    }
+
+    /// Carries it farther by twice as many terms, for contacts that last long enough for the force to turn.
+    pub fn carry_excitation(&mut self) {
+        self.is_far = true;
+        self.expand(WAVE..2 * WAVE);
+    }
+
+    fn expand(&mut self, orders: Range<usize>) {
+        let (cos, sin) = (self.cos.as_flattened_mut(), self.sin.as_flattened_mut());
+        for k in orders {
             let [turn, back] = [self.omega / k as f64, self.returns / k as f64];
-            (self.cos[k], self.sin[k]) = (-turn * self.sin[k - 1], back * self.cos[k - 1]);
+            (cos[k], sin[k]) = (-turn * sin[k - 1], back * cos[k - 1]);
         }
+    }
+
+    /// The angle (rad) by which the force may turn as it is set.
+    pub fn turn(&self) -> f64 {
+        if self.is_far { Self::FAR_TURN } else { Self::TURN }
+    }
+
+    /// A component of the force a time after it was set.
+    #[inline(always)]
+    fn wave(&self, [near, far]: &[[f64; WAVE]; 2], t: f64) -> f64 {
+        let sum = polynomial(near, t);
+        if self.is_far { sum + t.powi(WAVE as i32) * polynomial(far, t) } else { sum }
     }
 
     /// `[P cos ωt, P sin ωt]` at the time of a state, N.
     pub fn excitation(&self, y: &RegularisedState) -> Excitation {
         let t = y[4] - self.since;
-        [polynomial(&self.cos, t), polynomial(&self.sin, t)]
+        [self.wave(&self.cos, t), self.wave(&self.sin, t)]
     }
 
     /// Whether the force is linear in time.
@@ -175,7 +213,7 @@ impl RegularisedContact {
         // The force's polynomial comes last and alone: it is the longest chain of dependent operations.
         let resisting = self.primary[1] * v1 + self.primary[2] * x1;
         let push = |i: usize| self.hertz[i] * cube + self.dashpot[i] * w + self.spring[i] * stretch;
-        let excitation = self.primary[0] * polynomial(&self.cos, t - self.since);
+        let excitation = self.primary[0] * self.wave(&self.cos, t - self.since);
         [
             (self.sign * resisting - push(1)) - self.felt * excitation,
             (self.sign * push(0) - resisting) + excitation,
@@ -184,7 +222,7 @@ impl RegularisedContact {
 
     /// The sum of the sizes of the terms that accelerate the PS, m/s², which sets the rounding error of its acceleration.
     pub fn size_of_terms(&self, &[q, w, x1, v1, _]: &RegularisedState) -> f64 {
-        let force = if self.is_linear() { self.cos[0].abs() } else { self.cos[0].hypot(self.sin[0]) };
+        let force = if self.is_linear() { self.cos[0][0].abs() } else { self.cos[0][0].hypot(self.sin[0][0]) };
         self.primary[0] * force
             + self.primary[1] * v1.abs()
             + self.primary[2] * x1.abs()

@@ -263,10 +263,9 @@ fn costs(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
             let (name, has) = (goal.name(), said(&of.tmd));
             words.push(format!("is one that no TMD of this mass keeps: without it {name} is {has}"));
         }
-        match (&compared.ssvi, &of.ssvi) {
-            (Some(own), Some(free)) if own.feasible => words.push(cost(own, free)),
-            (Some(own), None) if own.feasible => words.push("the SSVI NES stays below it".to_owned()),
-            _ => {}
+        if let Some(own) = compared.chosen().filter(|chosen| chosen.what == What::Ssvi) {
+            let stays = || "the SSVI NES stays below it".to_owned();
+            words.push(of.ssvi.as_ref().map_or_else(stays, |free| cost(own, free)));
         }
         let name = limit(requirements, of.constraint);
         (!words.is_empty()).then(|| format!("The limit {name} {}.", words.join("; ")))
@@ -280,7 +279,7 @@ fn from_rest(requirements: &Requirements, compared: &Comparison) -> Option<Strin
     let chosen = compared.chosen().filter(|chosen| !chosen.is_transient())?;
     let above = requirements.limits.set().filter_map(|limit| {
         let Limit::Of(measure) = limit else { return None };
-        let (value, allowed) = (chosen.from_rest.get(measure).value, requirements.limits.get(limit)?);
+        let (value, allowed) = (chosen.most().get(measure).value, requirements.limits.get(limit)?);
         (value > (1.0 + ABOVE) * allowed)
             .then(|| format!("{} {}", measure.name().replace('_', " "), sized(value, measure.unit())))
     });

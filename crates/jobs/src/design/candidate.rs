@@ -41,22 +41,20 @@ pub struct Candidate {
     pub binding: Vec<(Limit, f64)>,
     /// Largest values once the motion is steady, each with its place; under a shock or a record, from the time on from which they count.
     pub steady: PerMeasure<Need>,
-    /// The same from rest on.
-    pub from_rest: PerMeasure<Need>,
+    /// The same from rest on, of the one to build: many runs.
+    pub from_rest: Option<PerMeasure<Need>>,
 }
 
 impl Candidate {
     /// Measures the scene of a study, with its damper or without.
     pub fn new(what: What, study: &Study) -> Result<Self, Unusable> {
         let settings = study.solver.settings();
-        let needs =
-            study.goal().needs_above(&study.scene, &settings, told(&study.goal().limits), &|| true)?;
+        let mut steady = study.goal().own_needs(&study.scene, &settings, &|| true)?;
         let found = study.goal().evaluate(&study.scene, &settings, f64::INFINITY)?;
         let limits = study.goal().limits;
         let is_damper = study.scene.damper.is_some();
         let binding =
             limits.active(&found.reached).into_iter().map(|limit| (limit, found.reached.get(limit)));
-        let (mut steady, from_rest) = (needs.own, needs.whole);
         for measure in Measure::ALL {
             let own = steady.get(measure);
             if own.value == f64::NEG_INFINITY {
@@ -72,8 +70,22 @@ impl Candidate {
             feasible: is_damper && found.violation == 0.0,
             binding: binding.collect(),
             steady,
-            from_rest,
+            from_rest: None,
         })
+    }
+
+    /// The same with its largest values from rest on.
+    pub fn from_rest_on(self) -> Result<Self, Unusable> {
+        let Study { scene, solver, .. } = &self.study;
+        let goal = self.study.goal();
+        let asked = (&self.steady, told(&goal.limits));
+        let from_rest = goal.needs_from_rest(scene, &solver.settings(), asked, &|| true)?;
+        Ok(Self { from_rest: Some(from_rest), ..self })
+    }
+
+    /// The largest values from rest on, or those of the steady motion where the others were not looked at.
+    pub fn most(&self) -> &PerMeasure<Need> {
+        self.from_rest.as_ref().unwrap_or(&self.steady)
     }
 
     /// The [goal](Self::goal) of the scene of a study, to the same bits, with which alone a search ends; none where it has no bound.
@@ -114,9 +126,9 @@ impl Candidate {
         self.damper().map_or(0.0, |damper| damper.damping.get())
     }
 
-    /// Whether it touches a wall, from rest on.
+    /// Whether it touches a wall, as far as it was looked at.
     pub fn strikes(&self) -> bool {
-        self.from_rest.get(Measure::ContactForce).value > 0.0
+        self.most().get(Measure::ContactForce).value > 0.0
     }
 }
 

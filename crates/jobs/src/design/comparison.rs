@@ -61,7 +61,7 @@ pub struct Cost {
     pub constraint: Constraint,
     /// The best TMD without it.
     pub tmd: Candidate,
-    /// The best SSVI NES without it, where the limit holds that under all limits back.
+    /// The best SSVI NES without it, where one is to be built that the limit holds back.
     pub ssvi: Option<Candidate>,
 }
 
@@ -121,8 +121,8 @@ fn by(requirements: &Requirements, study: &Study, formula: Formula) -> Result<(F
     Ok((formula, tmd))
 }
 
-/// The SSVI NES that the ends of a search are, the best first, each with the value of the search: those that can be run and strike. One that
-/// strikes nothing is a TMD. Each is measured when it is asked for, which takes most of the time where its motions are irregular.
+/// The SSVI NES that the ends of a search are, the best first, each with the value of the search: those that can be run and strike, if only
+/// just after rest. One that strikes nothing is a TMD. Each is measured when it is asked for, which takes most of the time where its motions are irregular.
 fn striking<'a>(
     study: &'a Study,
     found: &'a ssvi::Ends,
@@ -130,8 +130,9 @@ fn striking<'a>(
     let measured = |(value, end): &'a (f64, Vec<f64>)| -> Result<Option<(f64, Candidate)>, Error> {
         let place = |parameter: Parameter| Parameter::PAPER.iter().position(|own| *own == parameter);
         let study = with(study, |parameter| place(parameter).map_or(f64::NAN, |i| end[i]))?;
-        let candidate = Candidate::new(What::Ssvi, &study).ok().filter(Candidate::strikes);
-        Ok(candidate.map(|candidate| (*value, candidate)))
+        let steady = Candidate::new(What::Ssvi, &study).ok();
+        let all = steady.and_then(|of| if of.strikes() { Some(of) } else { of.from_rest_on().ok() });
+        Ok(all.filter(Candidate::strikes).map(|candidate| (*value, candidate)))
     };
     found.ends.iter().filter_map(move |end| measured(end).transpose())
 }
@@ -228,7 +229,8 @@ pub(super) fn compare(
         .is_some_and(|found| doubt(found) <= 1 || requirements.run().is_some() && much_better(found))
         && !(requirements.driving.has_either_sign() && other_sign.is_some_and(|other| other > tmd.goal));
     let choice = choice(requirements, &tmd, ssvi.as_ref(), is_trusted);
-    let costs = costs(requirements, [&tmd, ssvi.as_ref().unwrap_or(&tmd)], journal, watch)?;
+    let built = ssvi.as_ref().filter(|_| choice == Some(What::Ssvi));
+    let costs = costs(requirements, (&tmd, built), journal, watch)?;
     let dampers = [Some(&tmd), ssvi.as_ref()];
     let detuned = match requirements.k1_error {
         Some(error) => dampers.iter().flatten().map(|damper| off(damper, error)).collect::<Result<_, _>>()?,
@@ -240,6 +242,8 @@ pub(super) fn compare(
         Some(What::Ssvi) => judged.clone(),
         _ => chosen.map(|damper| certified(&damper.study)).transpose()?,
     };
+    let whole = |of: Candidate| if Some(of.what) == choice { of.from_rest_on() } else { Ok(of) };
+    let (tmd, ssvi) = (whole(tmd)?, ssvi.map(whole).transpose()?);
     Ok(Comparison {
         goal,
         none,
@@ -275,10 +279,10 @@ fn choice(
     }
 }
 
-/// What each limit costs: the search without it goes on from the end of that with it.
+/// What each limit costs the best TMD, and an SSVI NES that is to be built: the search without the limit goes on from the end of that with it.
 fn costs(
     requirements: &Requirements,
-    [tmd, ssvi]: [&Candidate; 2],
+    (tmd, built): (&Candidate, Option<&Candidate>),
     journal: &Journal,
     watch: &dyn Observer,
 ) -> Result<Vec<Cost>, Error> {
@@ -287,11 +291,11 @@ fn costs(
         let study = free.tmd()?;
         let formulas = Formula::all(&free, &study.scene.primary);
         let free_tmd = tmd_of(&study, tmd::best(&study, &formulas)?)?;
-        let binds = match constraint {
+        let binds = |ssvi: &&Candidate| match constraint {
             Constraint::Of(limit) => ssvi.binding.iter().any(|(other, _)| *other == limit),
             Constraint::K2 => ssvi.k2() > 0.99 * requirements.allowed(constraint),
         };
-        let free_ssvi = if ssvi.what == What::Ssvi && binds {
+        let free_ssvi = if let Some(ssvi) = built.filter(binds) {
             let study = free.ssvi()?;
             let start = Parameter::PAPER
                 .map(|parameter| ssvi.damper().map_or(f64::NAN, |damper| parameter.get(&damper)));
@@ -350,15 +354,17 @@ impl Serialize for Candidate {
         };
         let counts = if self.is_transient() { "in_window" } else { "steady" };
         let binding: Vec<Limit> = self.binding.iter().map(|(limit, _)| *limit).collect();
-        json!({
+        let mut all = json!({
             "damper": self.what,
             "design": self.damper(),
             "keeps_limits": self.feasible,
             "binding": binding,
             counts: largest(&|measure| self.steady.get(measure)),
-            "from_rest": largest(&|measure| self.from_rest.get(measure)),
-        })
-        .serialize(serializer)
+        });
+        if let Some(from_rest) = &self.from_rest {
+            all["from_rest"] = largest(&|measure| from_rest.get(measure)).into();
+        }
+        all.serialize(serializer)
     }
 }
 

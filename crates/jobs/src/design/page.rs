@@ -229,9 +229,9 @@ const MM: f64 = 1e3;
 
 fn to_scale(of: &Candidate) -> Drawing {
     let stroke = MM * of.value(Measure::Stroke);
-    let begin = MM * of.from_rest.get(Measure::Stroke).value;
+    let begin = MM * of.most().get(Measure::Stroke).value;
     // Of a run, all of it: what moves before values count needs room, too.
-    let most = if of.is_transient() { &of.from_rest } else { &of.steady };
+    let most = if of.is_transient() { of.most() } else { &of.steady };
     let motion = MM * most.get(Measure::Displacement).value;
     let walls = of
         .damper()

@@ -8,7 +8,7 @@ use super::candidate::Candidate;
 use super::tmd::simplex;
 use super::words::sized;
 use crate::tune::descent::descend;
-use crate::tune::objective::{coarse, kept, searched};
+use crate::tune::objective::{coarse, kept, loose, searched};
 use crate::{Error, Observer, Progress};
 use rayon::prelude::*;
 use retune_model::{Coupled, Measure, Scene};
@@ -41,7 +41,9 @@ const DESCENTS: usize = 4;
 /// whose contacts lose energy take several times as long.
 const PATIENCE: u64 = 150;
 const PATIENCE_WITH_LOSS: u64 = 60;
-/// Samples of the band that a search looks at there, with the peaks between them; what it comes to is measured on all samples of the study.
+/// Tolerance of runs there, where a gain of 1e-5 is wanted of a step, and samples of the band that a search looks at, with the peaks between
+/// them: what it comes to is measured on all samples of the study, at its tolerance.
+const RTOL_WITH_LOSS: f64 = 1e-7;
 const SAMPLES_WITH_LOSS: usize = 16;
 
 /// What a search for an SSVI NES comes to.
@@ -179,20 +181,20 @@ pub(super) fn best(
     let search = study.search().map_err(Error::rule(study))?;
     debug_assert_eq!(search.variables, Parameter::PAPER);
     let sought = sought(study);
-    let exact = searched(&sought, &search, &search.variables);
     let objective = if is_lossy(&study.scene) {
-        exact.sloping(Slopes::Differences).within(PATIENCE_WITH_LOSS)
+        let loose = loose(&sought, &search, &search.variables, RTOL_WITH_LOSS);
+        loose.sloping(Slopes::Differences).within(PATIENCE_WITH_LOSS)
     } else {
-        exact.within(PATIENCE)
+        searched(&sought, &search, &search.variables).within(PATIENCE)
     };
-    let loose = coarse(&sought, &search, &search.variables);
+    let coarse = coarse(&sought, &search, &search.variables);
     // Under other limits it is no answer to what was asked.
     let asked = beside.is_empty();
     let beside: Vec<Start> = beside.iter().cloned().enumerate().collect();
     let starts = if beside.is_empty() { starts(study, &search, tmd) } else { beside };
     let most = if tmd.feasible { WORTH * tmd.goal } else { f64::INFINITY };
     let name = format!("{stage} known");
-    let value = kept(&loose, journal, &name, || ());
+    let value = kept(&coarse, journal, &name, || ());
     let bar = watch.progress("SSVI NES, known designs", starts.len() as u64);
     let tried = |start: &Start| {
         let value = value(&start.1, most);
@@ -255,6 +257,6 @@ pub(super) fn best(
     let known = ends.first().map(|(_, x)| x.clone());
     ends.extend(found?.into_iter().filter(|(_, x)| known.as_ref() != Some(x)));
     ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let tried = objective.counts().evaluations + loose.counts().evaluations;
+    let tried = objective.counts().evaluations + coarse.counts().evaluations;
     Ok(Ends { ends, tried: tried as usize })
 }

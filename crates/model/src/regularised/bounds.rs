@@ -138,7 +138,7 @@ impl RegularisedContact {
 
     /// A bound on the force, N.
     fn most_force(&self) -> f64 {
-        if self.is_linear() { self.force[0] } else { self.cos[0].hypot(self.sin[0]) }
+        if self.is_linear() { self.force[0] } else { self.cos[0][0].hypot(self.sin[0][0]) }
     }
 
     /// Bounds on a piece; `None` if it is too long for the proof.

@@ -48,31 +48,33 @@ impl Goal {
     /// # Errors
     /// As [`Goal::evaluate_while`].
     pub fn needs(&self, scene: &Scene, settings: &Settings, proceed: Proceed<'_>) -> Result<Needs, Unusable> {
-        self.needs_above(scene, settings, PerMeasure::all(f64::NEG_INFINITY), proceed)
+        let own = self.own_needs(scene, settings, proceed)?;
+        let matters = PerMeasure::all(f64::NEG_INFINITY);
+        let whole = self.needs_from_rest(scene, settings, (&own, matters), proceed)?;
+        Ok(Needs { whole, own })
     }
 
-    /// The same, but from rest on (`whole`) peaks between samples are searched only where they may exceed what is given for their measure.
-    /// Irregular motions have a peak at every other sample, whose search is most of the work.
+    /// What a scene needs from rest on, [`Needs::whole`], beside what it needs by what the objective looks at. Peaks between samples are
+    /// searched only where they may exceed what `matters` of their measure: irregular motions have one at every other sample, whose search
+    /// is most of the work.
     ///
     /// # Errors
     /// As [`Goal::evaluate_while`].
-    pub fn needs_above(
+    pub fn needs_from_rest(
         &self,
         scene: &Scene,
         settings: &Settings,
-        matters: PerMeasure<f64>,
+        (own, matters): (&PerMeasure<Need>, PerMeasure<f64>),
         proceed: Proceed<'_>,
-    ) -> Result<Needs, Unusable> {
-        let goal = self.of_every_measure();
-        let own = goal.own(scene, settings, proceed)?;
-        let (mut whole, end) = (goal, self.window.to);
+    ) -> Result<PerMeasure<Need>, Unusable> {
+        let mut whole = self.of_every_measure();
         whole.window.from = 0.0;
         whole.objective.for_each_term(&mut |term| {
             term.response = Response::Window;
             let single = term.ensemble.is_none() && term.k1.is_none() && term.restitution.is_none();
             if let Some(band) = term.omega.as_mut().filter(|_| single) {
                 let Band { from, to, samples } = band.of(&scene.primary);
-                let wanted = ((to - from) * end * PER_WIDTH / TAU).ceil().min(MOST);
+                let wanted = ((to - from) * self.window.to * PER_WIDTH / TAU).ceil().min(MOST);
                 band.samples = samples.max(wanted as usize);
             }
         });
@@ -82,7 +84,7 @@ impl Goal {
                 *all = own;
             }
         });
-        Ok(Needs { whole: all, own })
+        Ok(all)
     }
 
     /// What a scene needs by what the objective looks at alone: [`Needs::own`], to the same bits.
@@ -95,7 +97,8 @@ impl Goal {
         settings: &Settings,
         proceed: Proceed<'_>,
     ) -> Result<PerMeasure<Need>, Unusable> {
-        self.of_every_measure().own(scene, settings, proceed)
+        let matters = PerMeasure::all(f64::NEG_INFINITY);
+        self.of_every_measure().largest(scene, settings, (None, matters), proceed)
     }
 
     /// The same goal without limits, so that it stops at none. A stationary random motion has no largest values: those of the draw in the
@@ -108,15 +111,6 @@ impl Goal {
             }
         });
         goal
-    }
-
-    fn own(
-        &self,
-        scene: &Scene,
-        settings: &Settings,
-        proceed: Proceed<'_>,
-    ) -> Result<PerMeasure<Need>, Unusable> {
-        self.largest(scene, settings, (None, PerMeasure::all(f64::NEG_INFINITY)), proceed)
     }
 
     /// The largest value of each measure from a time on, s; without one, of what the objective looks at. Peaks are searched where they may

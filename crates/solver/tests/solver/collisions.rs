@@ -79,3 +79,22 @@ fn reference_general_methods_see_contacts_as_long() {
         }
     }
 }
+
+/// On walls so soft that the force turns by more than a radian during a contact.
+#[test]
+fn reference_contacts_in_which_the_force_turns() {
+    let soft = Numbers { young: [2.1e11, 2e3, 2.1e11, 2e3], ..TWO_SIDED };
+    let window = Window { from: 10.0, to: 20.0 };
+    for numbers in [soft, Numbers { lambda: 0.4, ..soft }, Numbers { e: 0.5, ..soft }] {
+        let scene = numbers.scene();
+        let turns = |longest: f64| numbers.omega * longest;
+        let walls = collisions(&scene, window, &Settings::default()).expect("a run");
+        assert!(walls.iter().all(|wall| turns(wall.longest) > 1.0), "{walls:?}");
+        let run = simulate(&scene, window, &Settings::default()).expect("a run");
+        let general = Settings { method: Method::Dop853, rtol: 1e-13, ..Settings::default() };
+        let other = simulate(&scene, window, &general).expect("a run");
+        assert_close(run.e1_max.value, other.e1_max.value, other.e1_max.value, 1e-11, "E1max");
+        // 2700 while the force was carried over a turn of 0.05 alone.
+        assert!(run.work.steps < 2000, "{:?}", run.work);
+    }
+}

@@ -39,8 +39,9 @@ pub fn integrate(
     equations.set_force(equations.push(y[W]) >= 0.0);
     let plan = Plan::new(&equations, &y, rtol);
     let start = Knot { clock: [y[Q], 0.5 * y[W]], ..*from };
+    let (is_soft, shortest) = (equations.is_soft(), plan.h * 1e-12);
     let mut contact =
-        Contact { shortest: plan.h * 1e-12, touch_down: from.t, equations, to, rtol, budget, plan, start, y };
+        Contact { shortest, touch_down: from.t, equations, is_soft, to, rtol, budget, plan, start, y };
     loop {
         let Accepted { slope, length, next, end, is_last, lifts_off, parts } =
             contact.step(work, observer.looks())?;
@@ -76,6 +77,8 @@ pub fn integrate(
 /// A contact on its way.
 struct Contact {
     equations: RegularisedContact,
+    /// Whether the force may have to be carried far.
+    is_soft: bool,
     touch_down: f64,
     /// The end of the run, s.
     to: f64,
@@ -111,9 +114,12 @@ impl Contact {
         loop {
             // The force is a polynomial about the start of the step: the step is planned not to outrun it, and checked.
             equations.set_excitation(y[TIME], self.start.excitation);
-            let reach = RegularisedContact::TURN / (equations.frequency() * plan.q);
+            let (unhindered, turning) = (plan.step(y), equations.frequency() * plan.q);
+            if self.is_soft && unhindered * turning > equations.turn() {
+                equations.carry_excitation();
+            }
+            let reach = equations.turn() / turning;
             // A step aimed at the wall if that is near enough; the aim may be rough (see `reach_wall`).
-            let unhindered = plan.step(y);
             let planned = unhindered.min(reach);
             let left = if y[W] < 0.0 { equations.theta_to_wall(y) } else { f64::INFINITY };
             let h = if left < (1.2 * planned).min(reach) { left } else { planned };
@@ -130,7 +136,7 @@ impl Contact {
             let wall = wall.filter(|wall| to_wall(wall) <= 1.1 * h);
             // Beyond the wall there is no contact: a step must end where the wall can be reached. Nor may it outrun the force.
             let turn = equations.frequency() * (tried.y[TIME] - y[TIME]);
-            let lost = (tried.y[Q] < 0.0 && wall.is_none()) || turn > 2.0 * RegularisedContact::TURN;
+            let lost = (tried.y[Q] < 0.0 && wall.is_none()) || turn > 2.0 * equations.turn();
             if error.is_nan() || error > 1.0 || lost {
                 work.rejected += 1;
                 plan.refuse(if lost { f64::INFINITY } else { error }, shortened, y);
