@@ -222,7 +222,8 @@ impl RegularisedContact {
 
     /// The sum of the sizes of the terms that accelerate the PS, m/s², which sets the rounding error of its acceleration.
     pub fn size_of_terms(&self, &[q, w, x1, v1, _]: &RegularisedState) -> f64 {
-        let force = if self.is_linear() { self.cos[0][0].abs() } else { self.cos[0][0].hypot(self.sin[0][0]) };
+        let force =
+            if self.is_linear() { self.cos[0][0].abs() } else { self.cos[0][0].hypot(self.sin[0][0]) };
         self.primary[0] * force
             + self.primary[1] * v1.abs()
             + self.primary[2] * x1.abs()
