@@ -122,7 +122,7 @@ fn by(requirements: &Requirements, study: &Study, formula: Formula) -> Result<(F
 }
 
 /// The SSVI NES that the ends of a search are, the best first, each with the value of the search: those that can be run and strike, if only
-/// just after rest. One that strikes nothing is a TMD. Each is measured when it is asked for, which takes most of the time where its motions are irregular.
+/// just after rest. Others are TMDs. Each is measured when it is asked for.
 fn striking<'a>(
     study: &'a Study,
     found: &'a ssvi::Ends,
@@ -237,19 +237,18 @@ pub(super) fn compare(
         None => Vec::new(),
     };
     let lightest = if tmd.feasible { None } else { lightest(requirements)? };
-    let chosen = dampers.into_iter().flatten().find(|damper| Some(damper.what) == choice);
     let certificate = match choice {
         Some(What::Ssvi) => judged.clone(),
-        _ => chosen.map(|damper| certified(&damper.study)).transpose()?,
+        Some(_) => Some(certified(&tmd.study)?),
+        None => None,
     };
     let whole = |of: Candidate| if Some(of.what) == choice { of.from_rest_on() } else { Ok(of) };
-    let (tmd, ssvi) = (whole(tmd)?, ssvi.map(whole).transpose()?);
     Ok(Comparison {
         goal,
         none,
         formulas,
-        tmd,
-        ssvi,
+        tmd: whole(tmd)?,
+        ssvi: ssvi.map(whole).transpose()?,
         tried,
         choice,
         other_sign,
@@ -297,8 +296,8 @@ fn costs(
         };
         let free_ssvi = if let Some(ssvi) = built.filter(binds) {
             let study = free.ssvi()?;
-            let start = Parameter::PAPER
-                .map(|parameter| ssvi.damper().map_or(f64::NAN, |damper| parameter.get(&damper)));
+            let own = |parameter: Parameter| ssvi.damper().map_or(f64::NAN, |damper| parameter.get(&damper));
+            let start = Parameter::PAPER.map(own);
             let stage = format!("ssvi without {}", constraint.name());
             let found = ssvi::best(&study, tmd, &[start.to_vec()], (journal, &stage), watch)?;
             striking(&study, &found).next().transpose()?.map(|(_, candidate)| candidate)
