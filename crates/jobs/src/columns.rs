@@ -10,11 +10,11 @@ pub const STATE: [(&str, &str); 4] = [("x1", "m"), ("v1", "m/s"), ("x2", "m"), (
 /// `E1max_none`; else without a unit.
 pub fn column(name: &str) -> Column {
     let parameters = Parameter::ALL.map(|parameter| (parameter.symbol(), parameter.unit()));
-    let measures = Measure::ALL.map(|measure| (measure.name(), measure.unit()));
+    let measures = Measure::OF_RUN.map(|measure| (measure.name(), measure.unit()));
     let is_it = |(known, _): &(&str, &'static str)| {
         name.strip_prefix(known).is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
     };
-    let known = parameters.into_iter().chain(measures).chain(STATE).chain([("decay_time", "s")]).find(is_it);
+    let known = parameters.into_iter().chain(measures).chain(STATE).find(is_it);
     Column::new(name, known.map_or("", |(_, unit)| unit))
 }
 

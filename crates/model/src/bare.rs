@@ -123,6 +123,11 @@ impl Bare {
         EvenForce::new(history.course.samples()?, self.force_of(history))
     }
 
+    /// Until when they set the steps of a flight, s, see [`Course::paced_until`](crate::Course::paced_until).
+    pub fn paced_until(&self) -> f64 {
+        self.history().map_or(f64::INFINITY, |history| history.course.paced_until())
+    }
+
     /// The same as if a stretch of time, of its own, went on for ever.
     #[must_use]
     pub fn during(self, stretch: Stretch) -> Self {

@@ -76,6 +76,15 @@ impl Forcing {
         self.source.history()
     }
 
+    /// When it ends, s: of a free decay at once, of a harmonic force never.
+    pub fn end(&self) -> f64 {
+        match &self.source {
+            Source::History(history) => history.course.end(),
+            Source::Decay(_) => 0.0,
+            _ => f64::INFINITY,
+        }
+    }
+
     /// The record that it names, if it does.
     pub fn record_mut(&mut self) -> Option<(Of, &mut Record)> {
         match &mut self.source {

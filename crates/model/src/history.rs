@@ -203,6 +203,12 @@ impl Course {
         if returns == 0.0 { f - turned * s } else { f * turned.cos() - s * turned.sin() }
     }
 
+    /// Until when a flight takes a step for each of its pieces, s. Those of a record are about as long as steps of the motion; those of a formula are as
+    /// short as its error asks for, and not to be kept once it is over.
+    pub fn paced_until(&self) -> f64 {
+        if let Self::Made(_) = self { self.end() } else { f64::INFINITY }
+    }
+
     /// When it is over, s.
     pub fn end(&self) -> f64 {
         match self {

@@ -1,6 +1,6 @@
 //! The catalogue of quantities: each largest value of a motion once, with its name, words and unit.
 
-use crate::unit::{ACCELERATION, ENERGY, FORCE, LENGTH, MODULUS, VELOCITY};
+use crate::unit::{ACCELERATION, ENERGY, FORCE, LENGTH, MODULUS, TIME, VELOCITY};
 use crate::{Rms, Unit};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
@@ -27,6 +27,8 @@ pub enum Measure {
     ContactForce,
     /// The pressure of Hertz's contact at the middle of either wall's contact area.
     ContactPressure,
+    /// How long after the forcing the energy of the primary structure exceeds a share of its largest value; no harmonic motion has it.
+    DecayTime,
     /// What a stationary random motion has in the place of a largest value.
     Stationary(Rms),
 }
@@ -43,6 +45,17 @@ impl Measure {
         Self::ContactForce,
         Self::ContactPressure,
     ];
+
+    /// All that a run may have a limit on: its largest values, then the decay time.
+    pub const OF_RUN: [Self; Self::ALL.len() + 1] = {
+        let mut all = [Self::DecayTime; Self::ALL.len() + 1];
+        let mut i = 0;
+        while i < Self::ALL.len() {
+            all[i] = Self::ALL[i];
+            i += 1;
+        }
+        all
+    };
 
     /// Those that a structure has without a damper, too: the first of [`Self::ALL`].
     pub const OF_STRUCTURE: [Self; 5] =
@@ -61,6 +74,12 @@ impl Measure {
             Self::Stroke => ["stroke", "stroke", "the largest stroke of the damper", "m"],
             Self::ContactForce => ["contact_force", "walls", "the largest contact force", "N"],
             Self::ContactPressure => ["contact_pressure", "pressure", "the largest contact pressure", "Pa"],
+            Self::DecayTime => [
+                "decay_time",
+                "decay",
+                "the time from the end of the forcing until E1 stays below 5 % of its largest value",
+                "s",
+            ],
             Self::Stationary(rms) => rms.entry(),
         }
     }
@@ -94,6 +113,7 @@ impl Measure {
             Self::Acceleration => ACCELERATION,
             Self::GroundForce | Self::ContactForce => FORCE,
             Self::ContactPressure => MODULUS,
+            Self::DecayTime => TIME,
             Self::Stationary(_) => self.of_run().units(),
         }
     }
@@ -108,9 +128,10 @@ impl Measure {
         matches!(self, Self::ContactForce | Self::ContactPressure)
     }
 
-    /// The largest value of a run: itself, or that in the place of which a stationary motion has it.
+    /// The largest value of a run: itself, that in the place of which a stationary motion has it, or that which a decay time counts from.
     pub const fn of_run(self) -> Self {
         match self {
+            Self::DecayTime => Self::Energy,
             Self::Stationary(Rms::Energy) => Self::Energy,
             Self::Stationary(Rms::Displacement) => Self::Displacement,
             Self::Stationary(Rms::Velocity) => Self::Velocity,
@@ -121,7 +142,7 @@ impl Measure {
         }
     }
 
-    /// Its place in [`Self::ALL`].
+    /// Its place in [`Self::OF_RUN`].
     pub const fn index(self) -> usize {
         match self {
             Self::Energy => 0,
@@ -132,13 +153,14 @@ impl Measure {
             Self::Stroke => 5,
             Self::ContactForce => 6,
             Self::ContactPressure => 7,
+            Self::DecayTime => 8,
             Self::Stationary(_) => self.of_run().index(),
         }
     }
 
-    /// All that may be made small: largest values, and what a stationary motion has.
+    /// All that may be made small: what a run has, and what a stationary motion has.
     pub fn every() -> impl Iterator<Item = Self> + Clone {
-        Self::ALL.into_iter().chain(Rms::ALL.map(Self::Stationary))
+        Self::OF_RUN.into_iter().chain(Rms::ALL.map(Self::Stationary))
     }
 
     /// Name, words and unit, as schemas describe it.
@@ -178,14 +200,14 @@ impl JsonSchema for Measure {
     }
 }
 
-/// A value for each [`Measure`].
+/// A value for each of [`Measure::OF_RUN`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PerMeasure<T>(pub [T; Measure::ALL.len()]);
+pub struct PerMeasure<T>(pub [T; Measure::OF_RUN.len()]);
 
 impl<T: Copy> PerMeasure<T> {
     /// The same value for every measure.
     pub const fn all(value: T) -> Self {
-        Self([value; Measure::ALL.len()])
+        Self([value; Measure::OF_RUN.len()])
     }
 
     /// The value for `measure`.
@@ -200,10 +222,14 @@ impl<T: Copy> PerMeasure<T> {
 }
 
 impl PerMeasure<bool> {
-    /// Every measure.
-    pub const EVERY: Self = Self::all(true);
+    /// Every largest value.
+    pub const EVERY: Self = {
+        let mut every = [true; Measure::OF_RUN.len()];
+        every[Measure::DecayTime.index()] = false;
+        Self(every)
+    };
 
-    /// Those that are set.
+    /// The largest values that are set.
     pub fn chosen(self) -> impl Iterator<Item = Measure> {
         Measure::ALL.into_iter().filter(move |measure| self.get(*measure))
     }

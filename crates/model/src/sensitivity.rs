@@ -175,7 +175,7 @@ impl Coupled {
             }
             Measure::ContactPressure => 0.0,
             // A moment of a run has none.
-            Measure::Stationary(_) => f64::NAN,
+            Measure::DecayTime | Measure::Stationary(_) => f64::NAN,
         }
     }
 }

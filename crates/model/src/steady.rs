@@ -32,8 +32,8 @@ impl Steady {
             Measure::GroundForce => bare.k1.hypot(omega * bare.c1) * x1,
             Measure::Stroke => self.stroke(),
             Measure::ContactForce | Measure::ContactPressure => 0.0,
-            // A harmonic motion is not random.
-            Measure::Stationary(_) => f64::NAN,
+            // A harmonic motion is not random and does not decay.
+            Measure::DecayTime | Measure::Stationary(_) => f64::NAN,
         }
     }
 

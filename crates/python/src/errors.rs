@@ -106,7 +106,8 @@ impl From<Unusable> for Fault {
             | Unusable::Stopped
             | Unusable::Motions(_)
             | Unusable::NoDerivatives
-            | Unusable::NotStationary => {
+            | Unusable::NotStationary
+            | Unusable::NotDecayed { .. } => {
                 Self::Study { message: error.to_string(), field: None, given: Given::Nothing }
             }
         }

@@ -26,12 +26,18 @@ const MOST_MAXIMA: usize = 16;
 /// # Errors
 /// [`SolverError`] with the time reached.
 pub fn decay_time(scene: &Scene, to: f64, settings: &Settings) -> Result<Option<f64>, SolverError> {
-    let end = scene.forcing.history().map_or(0.0, |history| history.course.end());
-    if !scene.forcing.is_transient() || end >= to {
+    Ok(decay(scene, to, settings)?.map(|decay| decay.value))
+}
+
+/// The same, and when the energy is at that share, at the latest `to`.
+pub(crate) fn decay(scene: &Scene, to: f64, settings: &Settings) -> Result<Option<Extreme>, SolverError> {
+    let end = scene.forcing.end();
+    if end >= to {
         return Ok(None);
     }
     let level = LEFT * e1_max(scene, Window { from: 0.0, to }, settings, f64::INFINITY)?.value;
-    Ok(Some(last_above(scene, level, Window { from: end, to }, settings)? - end))
+    let last = last_above(scene, level, Window { from: end, to }, settings)?;
+    Ok(Some(Extreme { value: last - end, time: last.min(to) }))
 }
 
 /// When the energy of the structure exceeds a level (J) in a window for the last time, s: the beginning of the window if it never does, infinite

@@ -1,6 +1,7 @@
 //! What a study makes small, and what it may set limits on: the largest value of a [`Measure`] in a window, and those of others from a
 //! time on, for any phase of the force. Only those that are asked for are computed.
 
+use crate::decay::decay;
 use crate::energy_bound;
 use crate::error::SolverError;
 use crate::linear::pieces::Block;
@@ -79,11 +80,41 @@ impl Extremes {
     }
 }
 
-/// The largest value of [`Ask::measure`] over a window, and those of [`Ask::also`] from its time to the end of the window.
+/// The largest value of [`Ask::measure`] over a window, and those of [`Ask::also`] from its time to the end of the window. A [decay
+/// time](crate::decay_time) is that of the whole run, infinite where it is not within it.
 ///
 /// # Errors
 /// [`SolverError`] with the time reached.
 pub fn extremes(
+    scene: &Scene,
+    window: Window,
+    settings: &Settings,
+    ask: Ask,
+) -> Result<Extremes, SolverError> {
+    let decays = ask.measure == Measure::DecayTime;
+    let beside = ask.also.is_some_and(|also| also.measures.get(Measure::DecayTime));
+    if !decays && !beside {
+        return largest_values(scene, window, settings, ask);
+    }
+    let never = Extreme { value: f64::INFINITY, time: window.to };
+    let decay = decay(scene, window.to, settings)?.unwrap_or(never);
+    let mut found = Extremes { largest: decay, reached: PerMeasure::default(), settled: true };
+    if ask.also.is_some() {
+        let cutoff = if decays { f64::INFINITY } else { ask.cutoff };
+        found =
+            largest_values(scene, window, settings, Ask { measure: ask.measure.of_run(), cutoff, ..ask })?;
+    }
+    if decays {
+        found.largest = decay;
+    }
+    if beside {
+        found.reached.set(Measure::DecayTime, decay.value);
+    }
+    Ok(found)
+}
+
+/// The same for largest values alone.
+fn largest_values(
     scene: &Scene,
     window: Window,
     settings: &Settings,
@@ -224,9 +255,11 @@ fn observed<'a, S: Structure<N>, const N: usize>(
         Measure::Velocity => Observed::Motion(StructureMotion::velocity),
         Measure::Acceleration => Observed::Motion(StructureMotion::acceleration),
         Measure::GroundForce => Observed::Motion(StructureMotion::ground_force),
-        Measure::Stroke | Measure::ContactForce | Measure::ContactPressure | Measure::Stationary(_) => {
-            Observed::Damper
-        }
+        Measure::Stroke
+        | Measure::ContactForce
+        | Measure::ContactPressure
+        | Measure::DecayTime
+        | Measure::Stationary(_) => Observed::Damper,
     }
 }
 

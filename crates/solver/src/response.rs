@@ -95,6 +95,8 @@ impl Response {
             Measure::Stroke => self.spring_deflection_max,
             Measure::ContactForce => self.force_max[0].max(self.force_max[1]),
             Measure::ContactPressure => self.pressure_max[0].max(self.pressure_max[1]),
+            // That takes runs of its own.
+            Measure::DecayTime => f64::NAN,
             Measure::Stationary(_) => self.largest(measure.of_run()),
         }
     }

@@ -29,7 +29,9 @@ pub fn least_steps(scene: &Scene, seconds: f64) -> f64 {
         Some(damper) => Flow::new(Coupled::new(primary, forcing, damper).linear(), seconds).step(),
     };
     // Each piece of a record is a step at least.
-    seconds / step.min(bare.even_force().map_or(f64::INFINITY, |force| force.even[1]))
+    let over = step.min(bare.even_force().map_or(f64::INFINITY, |force| force.even[1]));
+    let paced = seconds.min(bare.paced_until());
+    paced / over + (seconds - paced) / step
 }
 
 /// Whether a run of `seconds` (s) by the default method leaves out a fast part of its flights once that has decayed, as that of a strong
@@ -37,7 +39,8 @@ pub fn least_steps(scene: &Scene, seconds: f64) -> f64 {
 pub fn leaves_out_a_fast_part(scene: &Scene, seconds: f64) -> bool {
     let Scene { primary, forcing, damper } = scene;
     let bare = Bare::new(primary, forcing);
-    let longest = bare.even_force().map_or(seconds, |force| seconds.min(force.even[1]));
+    let paced = bare.even_force().filter(|_| seconds <= bare.paced_until());
+    let longest = paced.map_or(seconds, |force| seconds.min(force.even[1]));
     match damper {
         None => Reduced::of(&Flow::new(bare.linear(), longest), longest).is_some(),
         Some(damper) => {

@@ -4,7 +4,8 @@ use super::format::{Coarse, Study};
 use super::rule::Rule;
 use retune_model::{Forcing, Measure, Of, Parameter, Rms, Scene};
 use retune_optim::{
-    Ensemble, FrequencyBand, Goal, Limits, Objective, Part, Response, Statistic, StiffnessRange, Stiffnesses,
+    Ensemble, FrequencyBand, Goal, Limit, Limits, Objective, Part, Response, Statistic, StiffnessRange,
+    Stiffnesses,
 };
 use retune_solver::Settle;
 
@@ -218,6 +219,34 @@ pub(super) fn check_limits(limits: &Limits, end: f64) -> Result<(), Rule> {
         }
         _ => Ok(()),
     }
+}
+
+/// A decay time counts from the end of the forcing, which must be within the run.
+pub(super) fn check_decay(goal: &Goal, forcing: &Forcing) -> Result<(), Rule> {
+    let limit = goal.limits.get(Limit::Of(Measure::DecayTime));
+    for (_, term) in goal.objective.terms() {
+        let (field, value) = match limit {
+            _ if term.quantity == Measure::DecayTime => {
+                ("optimize.objective.quantity", Measure::DecayTime.name().to_owned())
+            }
+            Some(limit) => ("optimize.limits.decay_time", limit.to_string()),
+            None => continue,
+        };
+        let own = std::slice::from_ref(forcing);
+        let ends = if term.records.is_empty() { own } else { &term.records }.iter().map(Forcing::end);
+        let end = ends.fold(0.0, f64::max);
+        if end.is_infinite() {
+            let allowed =
+                "another quantity: a decay time is that after a pulse or a record, or of a free decay";
+            return Err(Rule::not_allowed(field, value, allowed));
+        }
+        if end >= goal.window.to {
+            let allowed =
+                "a T of `window` beyond the end of every pulse and record, from which a decay time counts";
+            return Err(Rule::not_allowed(field, format!("{value} with T = {} s", goal.window.to), allowed));
+        }
+    }
+    Ok(())
 }
 
 impl Study {

@@ -2,7 +2,7 @@
 
 use super::format::{GridAxis, Margins, Optimize, Solver, Study};
 use super::global::GlobalSearch;
-use super::objective::{check, check_limits};
+use super::objective::{check, check_decay, check_limits};
 use super::records;
 use super::rule::Rule;
 use retune_model::{Coupled, Damper, Design, Forcing, Measure, PerVariable, Side};
@@ -100,6 +100,7 @@ impl Study {
         let variables = varied(&optimize.vary)?;
         check(&optimize.objective, "optimize.objective", &self.scene)?;
         check_limits(&optimize.limits, self.window.end.get())?;
+        check_decay(&self.goal(), &self.scene.forcing)?;
         if optimize.objective.is_stationary() && !optimize.limits.is_empty() {
             let allowed = "none: limits are on largest values, of which a stationary random motion has none";
             return Err(Rule::not_allowed("optimize.limits", "what is given", allowed));

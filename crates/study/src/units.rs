@@ -115,7 +115,7 @@ fn of_name(name: &str) -> Option<&'static [Unit]> {
         _ => {}
     }
     let parameter = Parameter::ALL.into_iter().find(|parameter| parameter.symbol() == name);
-    let measure = Measure::ALL.into_iter().find(|measure| measure.name() == name);
+    let measure = Measure::OF_RUN.into_iter().find(|measure| measure.name() == name);
     let units = parameter.map(Parameter::units).or(measure.map(Measure::units))?;
     (!units[0].0.is_empty()).then_some(units)
 }

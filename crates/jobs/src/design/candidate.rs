@@ -134,7 +134,7 @@ impl Candidate {
 
 /// From where on a value from rest is told, and its peaks between samples matter: above its limit; of the stroke, which is drawn, everywhere.
 fn told(limits: &Limits) -> PerMeasure<f64> {
-    PerMeasure(Measure::ALL.map(|measure| match measure {
+    PerMeasure(Measure::OF_RUN.map(|measure| match measure {
         Measure::Stroke => f64::NEG_INFINITY,
         _ => limits.get(Limit::Of(measure)).unwrap_or(f64::INFINITY),
     }))

@@ -158,7 +158,7 @@ fn curve(of: &Candidate, [from, to]: [f64; 2]) -> Curve {
                 || bare.steady(omega),
                 |damper| Coupled::new(&scene.primary, &scene.forcing, &damper).steady(omega),
             );
-            return (omega, PerMeasure(Measure::ALL.map(|measure| steady.largest(&bare, omega, measure))));
+            return (omega, PerMeasure(Measure::OF_RUN.map(|measure| steady.largest(&bare, omega, measure))));
         }
         let window = study.window.window();
         let also = Some(Also { measures: PerMeasure::EVERY, from: window.from });

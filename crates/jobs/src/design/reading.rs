@@ -328,8 +328,8 @@ fn limits(specification: &Specification) -> Result<(Limits, Option<f64>), Error>
         }
         let known = measure(&name).map(Limit::Of).or((name == "cavity").then_some(Limit::Cavity));
         let Some(limit) = known else {
-            let all = Limit::ALL.map(Limit::name).join(", ");
-            let problem = format!("there is no quantity \"{name}\": give one of {all}, k2");
+            let all = Measure::ALL.map(Measure::name).join(", ");
+            let problem = format!("there is no quantity \"{name}\": give one of {all}, cavity, k2");
             return Err(typed.refused("limit", problem));
         };
         let value = positive(&typed, &field, own(limit))?;

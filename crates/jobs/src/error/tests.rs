@@ -149,6 +149,7 @@ fn unusable() -> Vec<Unusable> {
         Unusable::Motions(retune_dynamics::Error::NoPeriod),
         Unusable::NoDerivatives,
         Unusable::NotStationary,
+        Unusable::NotDecayed { to: 12.0 },
         Unusable::Touches { omega: 6.3, stroke: 0.4, room: 0.06 },
     ]
 }
@@ -243,7 +244,7 @@ fn regress_the_words_of_every_error() {
         each!(settings(), SettingError: Form Name Number OutOfRange Absent Start Rule),
         each!(rules(), Rule: Name EmptyWindow NoDamper NoOptimize NoRestitutions NoGrid NothingVaried VariedTwice EmptyBand
             NotVaried Axis GridOutside Grid StartOutside NoRows SameName NotAllowed Record SumAndMore NoEnd),
-        each!(unusable(), Unusable: Value Frequency Stiffness Member Run Stopped Motions NoDerivatives NotStationary Touches),
+        each!(unusable(), Unusable: Value Frequency Stiffness Member Run Stopped Motions NoDerivatives NotStationary NotDecayed Touches),
         each!(solvers(), SolverError: StepTooSmall TooFast Contact TooManySteps TooSlow Unstable Implausible Missed
             RigidWalls Grazing NoPeriod NoDerivatives NonFinite),
         each!(lines(), LineError: Count Number Long Unusable),

@@ -78,7 +78,7 @@ impl Plan {
             }
         }
         if quantities.is_empty() {
-            quantities.push(Quantity::Largest(Measure::Energy));
+            quantities.push(Quantity::Of(Measure::Energy));
         }
         let scale = if options.log { Scale::Log } else { Scale::Linear };
         Ok(Self { over, from, to, points, scale, quantities, objective })
@@ -114,12 +114,10 @@ impl Plan {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Quantity {
-    /// A largest value of the motion in the window.
-    Largest(Measure),
+    /// A largest value of the motion in the window, or the [decay time](retune_solver::decay_time), which no harmonic motion has.
+    Of(Measure),
     /// The transmissibility, see [`retune_model::Forcing::transmissibility`].
     Transmissibility,
-    /// The time that the motion after a pulse or a record takes to decay, see [`retune_solver::decay_time`]. No harmonic motion has it.
-    DecayTime,
     /// Impacts in the window, on both walls together.
     Impacts,
 }
@@ -127,19 +125,14 @@ pub enum Quantity {
 impl Quantity {
     /// All of them.
     pub fn all() -> impl Iterator<Item = Self> {
-        Measure::ALL.into_iter().map(Self::Largest).chain([
-            Self::Transmissibility,
-            Self::DecayTime,
-            Self::Impacts,
-        ])
+        Measure::OF_RUN.into_iter().map(Self::Of).chain([Self::Transmissibility, Self::Impacts])
     }
 
     /// Its name on the command line and in tables.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Largest(measure) => measure.name(),
+            Self::Of(measure) => measure.name(),
             Self::Transmissibility => "transmissibility",
-            Self::DecayTime => "decay_time",
             Self::Impacts => "impacts",
         }
     }
@@ -147,8 +140,7 @@ impl Quantity {
     /// Its SI unit; empty for a pure number.
     pub const fn unit(self) -> &'static str {
         match self {
-            Self::Largest(measure) => measure.unit(),
-            Self::DecayTime => "s",
+            Self::Of(measure) => measure.unit(),
             Self::Transmissibility | Self::Impacts => "",
         }
     }

@@ -167,8 +167,8 @@ impl Sweep {
             columns.extend([name, "omega_worst", "violation", &format!("{name}_none")].map(column));
             return columns;
         }
-        let last = if self.decays() { Quantity::DecayTime } else { Quantity::Transmissibility };
-        let structure = || Measure::OF_STRUCTURE.map(Measure::name).into_iter().chain([last.name()]);
+        let last = if self.decays() { Measure::DecayTime.name() } else { Quantity::Transmissibility.name() };
+        let structure = || Measure::OF_STRUCTURE.map(Measure::name).into_iter().chain([last]);
         columns.extend(structure().map(column));
         if self.study.scene.damper.is_some() {
             columns.extend(Measure::OF_DAMPER.map(Measure::name).map(column));

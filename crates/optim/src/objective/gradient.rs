@@ -130,7 +130,7 @@ impl Slopes<'_> {
         let Place { scene, phase, .. } = &place;
         let ask = Ask { measure: term.quantity, phase: *phase, ..Ask::default() };
         let by = match (term.response, &scene.damper) {
-            _ if term.is_stationary() => return Err(Unusable::NoDerivatives),
+            _ if !term.has_derivatives() => return Err(Unusable::NoDerivatives),
             (Response::Steady, Some(damper)) => {
                 let system = Coupled::new(&scene.primary, &scene.forcing, damper);
                 let omega = scene.forcing.frequency.get();

@@ -14,7 +14,7 @@ use serde::{Serialize, Serializer};
 /// A quantity that a limit may be set on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Limit {
-    /// The largest value of a measure in any run.
+    /// The largest value of a measure in any run, or its longest decay time.
     Of(Measure),
     /// `D + C`, m.
     Cavity,
@@ -22,11 +22,11 @@ pub enum Limit {
 
 impl Limit {
     /// All of them.
-    pub const ALL: [Self; Measure::ALL.len() + 1] = {
-        let mut all = [Self::Cavity; Measure::ALL.len() + 1];
+    pub const ALL: [Self; Measure::OF_RUN.len() + 1] = {
+        let mut all = [Self::Cavity; Measure::OF_RUN.len() + 1];
         let mut i = 0;
-        while i < Measure::ALL.len() {
-            all[i] = Self::Of(Measure::ALL[i]);
+        while i < Measure::OF_RUN.len() {
+            all[i] = Self::Of(Measure::OF_RUN[i]);
             i += 1;
         }
         all
@@ -60,7 +60,7 @@ impl Limit {
     const fn place(self) -> usize {
         match self {
             Self::Of(measure) => measure.index(),
-            Self::Cavity => Measure::ALL.len(),
+            Self::Cavity => Measure::OF_RUN.len(),
         }
     }
 }
@@ -101,7 +101,7 @@ impl<T: Copy> PerLimit<T> {
 impl PerLimit<f64> {
     /// What was reached of each measure; the cavity has none.
     pub fn measures(&self) -> PerMeasure<f64> {
-        PerMeasure(Measure::ALL.map(|measure| self.get(Limit::Of(measure))))
+        PerMeasure(Measure::OF_RUN.map(|measure| self.get(Limit::Of(measure))))
     }
 }
 
@@ -159,7 +159,7 @@ impl Limits {
     /// What a run must be watched for, and from when on; `None` where no limit asks for anything of a run.
     pub fn also(&self) -> Option<Also> {
         let limited = |measure: &Measure| self.get(Limit::Of(*measure)).is_some();
-        let measures: PerMeasure<bool> = Measure::ALL.into_iter().filter(limited).collect();
+        let measures: PerMeasure<bool> = Measure::OF_RUN.into_iter().filter(limited).collect();
         let from = self.from.map_or(0.0, NonNegative::get);
         (measures != PerMeasure::default()).then_some(Also { measures, from })
     }

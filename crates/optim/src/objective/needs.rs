@@ -101,14 +101,15 @@ impl Goal {
         self.of_every_measure().largest(scene, settings, (None, matters), proceed)
     }
 
-    /// The same goal without limits, so that it stops at none. A stationary random motion has no largest values: those of the draw in the
-    /// window are told.
+    /// The same goal without limits, so that it stops at none, of largest values alone. A stationary random motion has none: those of the draw
+    /// in the window are told.
     fn of_every_measure(&self) -> Self {
         let mut goal = Self { limits: Limits::default(), peaks: true, ..self.clone() };
         goal.objective.for_each_term(&mut |term| {
             if term.is_stationary() {
-                (term.response, term.quantity) = (Response::Window, term.quantity.of_run());
+                term.response = Response::Window;
             }
+            term.quantity = term.quantity.of_run();
         });
         goal
     }

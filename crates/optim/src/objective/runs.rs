@@ -45,7 +45,7 @@ pub(super) struct Observed {
 impl Observed {
     /// What limits need.
     pub(super) fn limits(limits: &Limits) -> Self {
-        let matters = Measure::ALL.map(|measure| limits.get(Limit::Of(measure)).unwrap_or(f64::INFINITY));
+        let matters = Measure::OF_RUN.map(|measure| limits.get(Limit::Of(measure)).unwrap_or(f64::INFINITY));
         Self { also: limits.also(), own: false, matters: PerMeasure(matters) }
     }
 }
@@ -64,7 +64,7 @@ pub(super) struct Runs<'a> {
 pub(super) type Numbered<'a> = (usize, &'a Objective);
 
 /// The largest quantity of some runs, and their largest value of each measure; 0 of those that are not observed.
-pub(super) type Largest = [f64; Measure::ALL.len() + 1];
+pub(super) type Largest = [f64; Measure::OF_RUN.len() + 1];
 
 fn largest_of(quantity: f64, PerMeasure(reached): PerMeasure<f64>) -> Largest {
     std::array::from_fn(|i| if i == 0 { quantity } else { reached[i - 1] })
@@ -107,6 +107,10 @@ impl<'a> Runs<'a> {
             Response::Motions => return self.motions(&scene, (omega, omega, 1), (number, term)),
         };
         let largest = found.largest.value;
+        let decay = if term.quantity == Measure::DecayTime { largest } else { 0.0 };
+        if decay.max(found.reached.get(Measure::DecayTime)).is_infinite() {
+            return Err(Unusable::NotDecayed { to: self.window.to });
+        }
         self.see(Place { largest, scene, phase, term: number }, found.reached, found.settled);
         Ok(largest_of(largest, found.reached))
     }

@@ -244,6 +244,11 @@ impl Objective {
         matches!(self.quantity(), Measure::Stationary(_))
     }
 
+    /// Whether what is made small changes smoothly with a design, and its derivatives are known: that of random motion and of decay times are not.
+    pub fn has_derivatives(&self) -> bool {
+        !self.is_stationary() && self.quantity() != Measure::DecayTime
+    }
+
     /// Whether every part of it is steady, so that no window and no solver matter.
     pub fn is_steady(&self) -> bool {
         self.terms().iter().all(|(_, term)| term.response == Response::Steady)

@@ -33,14 +33,25 @@ pub enum Unusable {
     /// The evaluation was stopped on the way.
     #[error("stopped before all of its runs were made")]
     Stopped,
-    /// Derivatives of what other starts than rest lead to were asked for.
-    #[error("the response \"motions\" has no derivatives here: give the response \"window\" or \"settled\"")]
+    /// Derivatives of what other starts than rest lead to, of a random motion or of a decay time were asked for.
+    #[error(
+        "derivatives of the response \"motions\", of random motion and of decay times are not known: give a largest value, and the response \
+         \"window\" or \"settled\""
+    )]
     NoDerivatives,
     /// A random motion without a spread of its own.
     #[error(
         "its random motion never becomes stationary, or spreads without bound: give the structure damping, and the damper a spring"
     )]
     NotStationary,
+    /// Its decay time is not within the run.
+    #[error(
+        "it has no decay time within the run: at the end, t = {to} s, its energy exceeds 5 % of its largest value; give a larger T"
+    )]
+    NotDecayed {
+        /// The end of the run, s.
+        to: f64,
+    },
     /// The steady motion reaches a wall, so that it is not linear.
     #[error(
         "the damper reaches a wall: its steady stroke at omega = {omega} rad/s is {stroke} m, of which D and C leave {room} m; \

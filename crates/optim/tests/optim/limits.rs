@@ -1,11 +1,12 @@
 //! Limits: the ranking of designs, the values that limits apply to, and that a cutoff changes no value below it.
 
-use retune_model::{Measure, NonNegative, Positive, Scene};
+use retune_model::{Measure, NonNegative, Of, Positive, Scene, Shape};
 use retune_optim::{
     Bounds, DesignObjective, FrequencyBand, Goal, INFEASIBLE, Limit, Limits, Objective, Options, Parameter,
-    Response, minimize, ranked, value_of,
+    Response, Stiffnesses, Unusable, minimize, ranked, value_of,
 };
-use retune_solver::{Settings, Window, simulate};
+use retune_solver::{Settings, Window, decay_time, simulate};
+use retune_testkit::histories::pulse;
 use retune_testkit::scenes::{Numbers, SSVI, TMD};
 use std::ops::ControlFlow;
 
@@ -67,7 +68,7 @@ fn exact_violations_are_shares_of_the_limits() {
     assert_eq!(limits.active(&free.reached), [Limit::Of(Measure::Stroke)]);
     // Quantities without a limit are not observed.
     let seen = evaluate(&goal(None, None, Some(1.0)), &scene, f64::INFINITY).reached;
-    assert_eq!(seen.0, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.42]);
+    assert_eq!(seen.0, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.42]);
 }
 
 /// Every measure can be limited, to what the whole run from rest has of it.
@@ -237,11 +238,52 @@ fn contract_peaks_of_stroke_and_force_are_searched_where_they_could_break_a_limi
     }
 }
 
+/// The decay time of an objective is the longest over its structures, which a limit may bound; where one is not within the run there is no value.
+#[test]
+fn exact_a_decay_time_is_the_longest_of_the_structures() {
+    let window = Window { from: 0.0, to: 14.0 };
+    let scene = SSVI.under(pulse(Of::Force, Shape::HalfSine, 9000.0, 0.4));
+    let stiffnesses = [2e4, 3.95e4, 6e4];
+    let times = stiffnesses.map(|k1| {
+        let scene = Parameter::K1.at(scene, k1).expect("a scene");
+        decay_time(&scene, window.to, &Settings::default()).expect("a run").expect("a time")
+    });
+    let longest = times.into_iter().fold(0.0, f64::max);
+    assert!(longest > times[1] && longest.is_finite(), "{times:?}");
+    let k1 = Some(Stiffnesses::Set(stiffnesses.map(positive).to_vec()));
+    let goal = |quantity, limits, window: Window| Goal {
+        objective: Objective { quantity, k1: k1.clone(), ..Objective::default() },
+        limits,
+        ..window.into()
+    };
+    let decay = goal(Measure::DecayTime, Limits::default(), window);
+    let found = evaluate(&decay, &scene, f64::INFINITY);
+    assert_eq!([found.value, found.worst.largest], [longest; 2]);
+    let limits = Limits::default().with(Limit::Of(Measure::DecayTime), positive(longest / 1.25));
+    let limited = evaluate(&goal(Measure::Energy, limits, window), &scene, f64::INFINITY);
+    assert_eq!(limited.reached.get(Limit::Of(Measure::DecayTime)), longest);
+    assert!((limited.violation - 0.25).abs() < 1e-12, "{}", limited.violation);
+    let short = Window { to: 0.5 * (longest + times[1]), ..window };
+    for goal in [goal(Measure::DecayTime, Limits::default(), short), goal(Measure::Energy, limits, short)] {
+        let found = goal.evaluate(&scene, &Settings::default(), f64::INFINITY);
+        assert_eq!(found.err(), Some(Unusable::NotDecayed { to: short.to }));
+    }
+    let objective = DesignObjective::new(
+        scene,
+        scene.damper.expect("a damper"),
+        vec![Parameter::K2],
+        decay.clone(),
+        Settings::default(),
+    );
+    let by = objective.gradient(&[SSVI.k2], &|| true);
+    assert_eq!((by.err(), decay.has_pieces()), (Some(Unusable::NoDerivatives), false));
+}
+
 #[test]
 fn contract_limits_have_names_and_units() {
     let told = Limit::ALL.map(|limit| (limit.name(), limit.unit()));
     let cavity = format!("{:>7}", Limit::Cavity);
-    assert_eq!((cavity.as_str(), told[1], told[8]), (" cavity", ("x1max", "m"), ("cavity", "m")));
+    assert_eq!((cavity.as_str(), told[1], told[9]), (" cavity", ("x1max", "m"), ("cavity", "m")));
     for limit in Limit::ALL {
         let text = format!("{{\"{limit}\": 2}}");
         let limits: Limits = serde_json::from_str(&text).expect("a limit by its name");

@@ -30,6 +30,8 @@ pub struct ContactFree<'a, S, const N: usize> {
     /// The record, if the flow takes a step for each of its pieces.
     samples: Option<EvenForce>,
     now: Knot<N>,
+    /// The longest step without samples, s.
+    longest: f64,
     max_steps: u64,
     /// Work done so far.
     pub work: Work,
@@ -38,13 +40,17 @@ pub struct ContactFree<'a, S, const N: usize> {
 impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
     /// The scene at t = 0; no step will be longer than `longest` (s).
     pub fn new(system: &'a S, longest: f64, max_steps: u64) -> Self {
-        let (linear, force) = (system.linear(), system.structure().even_force());
-        let longest = force.map_or(longest, |force| longest.min(force.even[1]));
         let now = Knot { t: 0.0, excitation: system.excitation(0.0), y: system.start(), clock: [1.0, 0.0] };
-        let flow = Flow::new(linear, longest);
+        Self::over(system.structure().even_force(), system, now, longest, max_steps)
+    }
+
+    /// The scene at a moment, over these samples.
+    fn over(force: Option<EvenForce>, system: &'a S, now: Knot<N>, whole: f64, max_steps: u64) -> Self {
+        let longest = force.map_or(whole, |force| whole.min(force.even[1]));
+        let flow = Flow::new(system.linear(), longest);
         let samples = in_steps(force, flow.step());
         let reduced = Reduced::of(&flow, longest).map(Box::new);
-        Self { system, flow, reduced, samples, now, max_steps, work: Work::default() }
+        Self { system, flow, reduced, samples, now, longest: whole, max_steps, work: Work::default() }
     }
 
     /// The same in another state at another time, s.
@@ -74,6 +80,10 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
                 return Ok(());
             }
             self.now.excitation = self.system.structure().excitation_in(&stretch, self.now.t);
+            if self.samples.is_some() && self.now.t >= self.system.structure().paced_until() {
+                let free = Self::over(None, self.system, self.now, self.longest, self.max_steps);
+                *self = Self { work: self.work, ..free };
+            }
             observer.seam();
             self.go(stretch.to.min(to), observer, budget)?;
             if stretch.to >= to || observer.satisfied() {

@@ -31,6 +31,7 @@ impl Hybrid<'_> {
         loop {
             now = self.over_samples(now, to, observer)?;
             self.stretch = self.system.bare().stretch(now.t);
+            self.leave_samples(now.t);
             let end = self.stretch.map_or(to, |stretch| stretch.to.min(to));
             if now.t >= to || observer.satisfied() {
                 return Ok(now);

@@ -70,6 +70,8 @@ pub struct Hybrid<'a> {
     /// The same of the second derivative, m/s².
     pub(super) second: [f64; 2],
     pub(super) rtol: f64,
+    /// The longest step of a flight without samples, s.
+    longest: f64,
     pub(super) max_steps: u64,
     /// The record, if the flow takes a step for each of its pieces.
     pub(super) samples: Option<EvenForce>,
@@ -103,9 +105,13 @@ impl<'a> Hybrid<'a> {
     /// Prepares the propagator. `rtol` is the relative error allowed in a step of a contact, `longest` (s) the longest
     /// flight step, `max_steps` the most steps a run may take.
     pub fn new(system: &'a Coupled, rtol: f64, longest: f64, max_steps: u64) -> Self {
-        let linear = system.linear();
-        let longest = system.bare().even_force().map_or(longest, |force| longest.min(force.even[1]));
-        let flow = Flow::new(linear, longest);
+        Self::over(system.bare().even_force(), system, rtol, longest, max_steps)
+    }
+
+    /// The same over these samples.
+    fn over(force: Option<EvenForce>, system: &'a Coupled, rtol: f64, whole: f64, max_steps: u64) -> Self {
+        let longest = force.map_or(whole, |force| whole.min(force.even[1]));
+        let flow = Flow::new(system.linear(), longest);
         let (step, bounds) = (flow.step(), derivative_bounds::<_, 4, 5>(system, STROKE));
         Self {
             system,
@@ -118,8 +124,9 @@ impl<'a> Hybrid<'a> {
             fourth: bounds[4],
             second: bounds[2],
             rtol,
+            longest: whole,
             max_steps,
-            samples: in_steps(system.bare().even_force(), step),
+            samples: in_steps(force, step),
             stretch: None,
             end: f64::INFINITY,
             work: Work::default(),
@@ -130,6 +137,16 @@ impl<'a> Hybrid<'a> {
     #[must_use]
     pub fn in_short_steps(self) -> Self {
         Self { reduced: None, ..self }
+    }
+
+    /// Goes on in steps of the motion where samples set them [no longer](retune_model::Course::paced_until).
+    #[cold]
+    pub(super) fn leave_samples(&mut self, t: f64) {
+        if self.samples.is_some() && t >= self.system.bare().paced_until() {
+            let free = Self::over(None, self.system, self.rtol, self.longest, self.max_steps);
+            *self =
+                Self { stretch: self.stretch, end: self.end, work: self.work, budget: self.budget, ..free };
+        }
     }
 
     /// The moment of flight with this state.

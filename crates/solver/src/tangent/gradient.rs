@@ -152,7 +152,11 @@ fn rates(system: &Coupled, measure: Measure, now: &Motion) -> [f64; 3] {
             let [near, far] = Side::BOTH.map(|side| system.contact_force_rates(excitation, &now.y, side));
             if near[0] > far[0] { near } else { far }
         }
-        Measure::Stroke | Measure::ContactForce | Measure::ContactPressure | Measure::Stationary(_) => {
+        Measure::Stroke
+        | Measure::ContactForce
+        | Measure::ContactPressure
+        | Measure::DecayTime
+        | Measure::Stationary(_) => {
             let [place, slope, curvature] = system.relative_position_rates(excitation, &now.y);
             [place - system.rest_distance(), slope, curvature]
         }

@@ -1,9 +1,10 @@
 //! When a motion has decayed.
 
 use crate::forcings::decay;
-use retune_model::{Finite, Of, Scene, Shape, Start};
+use retune_model::{Finite, Measure, Of, PerMeasure, Scene, Shape, Start};
 use retune_solver::{
-    LEFT, Method, Moment, Rows, Settings, Window, decay_time, e1_max, last_above, trajectory,
+    Also, Ask, LEFT, Method, Moment, Rows, Settings, Window, decay_time, e1_max, extremes, last_above,
+    trajectory,
 };
 use retune_testkit::histories::{noise, pulse};
 use retune_testkit::scenes::{LOSSY, Numbers, RESTORING, SSVI, Spread, TMD, TWO_SIDED};
@@ -44,6 +45,33 @@ fn exact_a_structure_that_is_let_go() {
             let later = found + 1e-3 * f64::from(i);
             assert!(share(later) < LEFT, "{later}");
         }
+    }
+}
+
+/// Among largest values the decay time is that of the whole run, whatever the window, and changes none of them.
+#[test]
+fn exact_a_decay_time_beside_largest_values() {
+    let settings = Settings::default();
+    let (early, late) = (Window { from: 0.0, to: 3.0 }, Window { from: 9.0, to: 15.0 });
+    let damped = SSVI.under(pulse(Of::Force, Shape::HalfSine, 9000.0, 0.4));
+    for scene in [damped, Scene { damper: None, ..damped }] {
+        let own = time(&scene, late.to).expect("a time");
+        assert!(own > early.to && own < late.to, "{own}");
+        let ask = |window, measure, also: &[Measure]| {
+            let measures: PerMeasure<bool> = also.iter().copied().collect();
+            let also = (!also.is_empty()).then_some(Also { measures, from: 1.0 });
+            extremes(&scene, window, &settings, Ask { measure, also, ..Ask::default() }).expect("a run")
+        };
+        let (decay, stroke) = (Measure::DecayTime, Measure::Stroke);
+        let plain = ask(late, Measure::Displacement, &[stroke]);
+        let beside = ask(late, Measure::Displacement, &[stroke, decay]);
+        assert_eq!((beside.largest, beside.reached.get(stroke)), (plain.largest, plain.reached.get(stroke)));
+        assert_eq!([beside.reached.get(decay), ask(late, decay, &[]).largest.value], [own; 2]);
+        let first = ask(late, decay, &[stroke]);
+        assert_eq!([first.largest.value, first.reached.get(stroke)], [own, plain.reached.get(stroke)]);
+        assert_eq!((first.reached.get(decay), plain.reached.get(decay)), (0.0, 0.0));
+        let never = ask(early, decay, &[decay]);
+        assert_eq!([never.largest.value, never.reached.get(decay)], [f64::INFINITY; 2]);
     }
 }
 

@@ -221,6 +221,7 @@ fn reference_runs_agree_with_dop853() {
             for history in [
                 pulse(of, Shape::HalfSine, size, 0.4),
                 pulse(of, Shape::Rectangle, size, 0.3),
+                made(of, Form::VersedSine(Finite::new(size).expect("finite")), 0.5, 1.0),
                 noise(of, size, (0.05, 60, false), &mut spread),
                 noise(of, size, (0.004, 500, true), &mut spread),
             ] {

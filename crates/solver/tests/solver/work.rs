@@ -1,8 +1,10 @@
 //! How much work a run is. A mistake that only makes runs slow is seen here, on a busy machine as on a quiet one; times and
 //! instructions are measured by `just lab bench-instructions`.
 
+use retune_model::{Finite, Form, Of, Scene};
 use retune_solver::methods::{Ode23s, Ode45, OneStep, Tolerance};
 use retune_solver::{Contacts, Method, Settings, System, Window, Work, least_steps, simulate};
+use retune_testkit::histories::made;
 use retune_testkit::scenes::{SSVI, TMD};
 
 /// The first step from a state: MATLAB's `ode45` and `ode23s`, formula by formula, of numbers that are easily followed by hand.
@@ -66,4 +68,26 @@ fn exact_the_least_steps_of_a_run_are_those_of_its_flight() {
     let least = |scene| least_steps(&scene, 20.0).ceil();
     assert_eq!(steps(TMD.scene()), least(TMD.scene()));
     assert!(steps(SSVI.scene()) > least(SSVI.scene()));
+}
+
+/// The samples of a formula set the steps of a flight while it lasts, and not those of the motion after it, from whenever on that is observed.
+#[test]
+fn exact_a_formula_sets_no_steps_once_it_is_over() {
+    let form = Form::VersedSine(Finite::new(90.0).expect("finite"));
+    let damped = TMD.under(made(Of::Force, form, 0.1, 1.0));
+    for scene in [damped, Scene { damper: None, ..damped }] {
+        let run =
+            |from: f64| simulate(&scene, Window { from, to: 20.0 }, &Settings::default()).expect("a run");
+        let least = least_steps(&scene, 20.0);
+        let whole = run(0.0);
+        for from in [0.0, 0.05, 0.1, 7.0] {
+            let found = run(from);
+            // A step is cut short where the window begins, and where the formula and the run end.
+            let more = found.work.steps as f64 - least;
+            assert!((0.0..4.0).contains(&more) && least < 1000.0, "{from}: {more} {least}");
+            for (found, whole) in found.final_state.into_iter().zip(whole.final_state) {
+                assert!((found - whole).abs() < 1e-15, "{from}: {found} {whole}");
+            }
+        }
+    }
 }

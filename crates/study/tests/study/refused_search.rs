@@ -123,6 +123,40 @@ fn contract_records_stand_in_the_place_of_one() {
     );
 }
 
+/// A decay time needs an end of what acts, within the run.
+#[test]
+fn contract_a_decay_time_counts_from_the_end_of_the_forcing() {
+    let pulse = json!({ "pulse": "half sine", "of": "force", "peak": 1, "duration": 30 });
+    let with = |forcing: Option<&Value>, objective: Value, limits: Value| {
+        let mut study = tiny();
+        study["window"] = json!({ "t0": 0, "T": 20 });
+        if let Some(forcing) = forcing {
+            study["scene"]["forcing"] = forcing.clone();
+        }
+        study["optimize"]["objective"] = objective;
+        study["optimize"]["limits"] = limits;
+        study.to_string()
+    };
+    let decay = || json!({ "quantity": "decay_time" });
+    let limit = || json!({ "decay_time": "3 s" });
+    let another = "give another quantity: a decay time is that after a pulse or a record, or of a free decay";
+    let beyond = "with T = 20 s is not allowed here: give a T of `window` beyond the end of every pulse and record, from which a decay time counts";
+    let quantity = "optimize.objective.quantity: decay_time";
+    refused_text(&with(None, decay(), json!({})), &format!("{quantity} is not allowed here: {another}"));
+    let refused = format!("optimize.limits.decay_time: 3 is not allowed here: {another}");
+    refused_text(&with(None, json!({}), limit()), &refused);
+    refused_text(&with(Some(&pulse), decay(), json!({})), &format!("{quantity} {beyond}"));
+    refused_text(&with(Some(&pulse), json!({}), limit()), &format!("optimize.limits.decay_time: 3 {beyond}"));
+    let mut short = pulse.clone();
+    short["duration"] = json!(1);
+    let records = json!({ "quantity": "decay_time", "records": [short, pulse] });
+    refused_text(&with(Some(&short), records, json!({})), &format!("{quantity} {beyond}"));
+    for (objective, limits) in [(decay(), json!({})), (json!({}), limit())] {
+        let read = from_text(&with(Some(&short), objective, limits), "tiny");
+        assert!(read.is_ok(), "{read:?}");
+    }
+}
+
 #[test]
 fn contract_a_million_million_points_are_refused_at_once() {
     let mut study = tiny();

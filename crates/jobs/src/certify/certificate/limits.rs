@@ -97,7 +97,7 @@ mod tests {
         let stroke = Limit::Of(retune_model::Measure::Stroke);
         let limits = Limits::default().with(stroke, most(0.2)).with(Limit::Cavity, most(0.5));
         let reached = |[stroke, force, cavity]: [f64; 3]| {
-            PerLimit([0.0, 0.0, 0.0, 0.0, 0.0, stroke, force, 0.0, cavity])
+            PerLimit([0.0, 0.0, 0.0, 0.0, 0.0, stroke, force, 0.0, 0.0, cavity])
         };
         let near = |at: &str, neighbour, seen| Near { at: at.to_owned(), neighbour, reached: reached(seen) };
         let around = [

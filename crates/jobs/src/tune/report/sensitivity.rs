@@ -21,11 +21,12 @@ pub fn section(findings: &Findings) -> Section {
     let near = &findings.measured().neighbourhood;
     let quantity = findings.quantity();
     let name = quantity.name();
+    let article = if name.starts_with(['E', 'a', 'x']) { "an" } else { "a" };
     let said = |value: f64| said(value, quantity);
     let body = html! {
         p {
             "Of " (near.members) " designs whose k1, k2, c2, D and C are off by at most " (digits(100.0 * near.errors, 3))
-            " %, nine in ten have an " (name) " from " (said(near.low)) " to " (said(near.high)) ", and half have less than "
+            " %, nine in ten have " (article) " " (name) " from " (said(near.low)) " to " (said(near.high)) ", and half have less than "
             (said(near.median)) ". The design itself has " (said(findings.optimum.certificate.value.value)) "."
         }
         (figure(&picture(findings), html! {
