@@ -119,8 +119,9 @@ pub enum Unmade {
     Samples(#[from] BadSamples),
 }
 
-/// The share of the sum of all amplitudes by which a formula may be off, where no step is given.
+/// The share of the sum of all amplitudes by which a formula may be off, where no step is given; a pulse, which is short, by less.
 const ERROR: f64 = 1e-5;
+const ERROR_OF_A_PULSE: f64 = 1e-6;
 /// The distance of the samples of a spectrum times its largest frequency, where none is given: 31 samples in its shortest period.
 const FINE: f64 = 0.2;
 /// The most samples that are made.
@@ -201,9 +202,10 @@ impl Recipe {
         let longest = match (&self.step, &self.form) {
             (Some(step), _) => step.get(),
             (None, Form::Spectrum(spectrum)) => FINE / spectrum.ends()[1],
-            (None, _) => {
+            (None, form) => {
                 let [force, curvature] = self.sizes();
-                (ERROR * 24.0 / 5.0 * force / curvature).sqrt()
+                let error = if matches!(form, Form::VersedSine(_)) { ERROR_OF_A_PULSE } else { ERROR };
+                (error * 24.0 / 5.0 * force / curvature).sqrt()
             }
         };
         // Of a constant the longest is infinite, and not a number of one that is zero.

@@ -15,6 +15,7 @@
 //! The force is a Taylor polynomial in the time since it was last set ([`RegularisedContact::set_excitation`]).
 
 pub(crate) mod bounds;
+pub(crate) mod overdamped;
 
 use crate::loss::{Law, Restoring, Stage};
 use crate::polynomial::{TERMS as WAVE, polynomial};
@@ -43,6 +44,7 @@ pub struct RegularisedContact {
     lambda: f64,                       // λ
     law: [f64; 2], // the factor of Hertz's force is law[0] + law[1] w: 1 + λ w, or 0 without force
     restoring: Option<Arc<Restoring>>, // the law in its place
+    overdamped: bool, // whether w follows the forces (`overdamped`)
     stretch: f64,  // sign (wall - D): the spring's stretch at touch-down, towards the wall
     since: f64,    // the time at which the excitation was set
     is_far: bool,  // whether the coefficients beyond the first WAVE are in use
@@ -76,6 +78,7 @@ impl Coupled {
             lambda,
             law: [1.0, lambda],
             restoring,
+            overdamped: false,
             stretch: side.sign() * (self.wall(side) - self.rest_distance()),
             since: 0.0,
             is_far: false,
@@ -252,6 +255,11 @@ impl RegularisedContact {
     #[inline(always)]
     pub fn derivative(&self, y: &RegularisedState) -> RegularisedState {
         let &[q, w, _, v1, _] = y;
+        if self.overdamped {
+            let following = self.following(y);
+            let [[w, rate, _], [a1, ..]] = [following.speed, following.acceleration];
+            return [0.5 * w, q * rate, q * v1, q * a1, q];
+        }
         let [rate, a1] = self.accelerations(y);
         [0.5 * w, q * rate, q * v1, q * a1, q]
     }

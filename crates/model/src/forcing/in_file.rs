@@ -68,8 +68,8 @@ pub(super) struct InFile {
     /// duration, how long a pulse, a sum of harmonics, a sweep or a random force lasts, s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) duration: Option<Positive>,
-    /// step, the time between the samples of what becomes some, s; by default so short that the force of a versed sine, a sum of harmonics or
-    /// a sweep is off by at most 1e-5 of the sum of its amplitudes, and of a spectrum 0.2 / its largest omega.
+    /// step, the time between the samples of what becomes some, s; by default so short that the force of a sum of harmonics or a sweep is
+    /// off by at most 1e-5 of the sum of its amplitudes, that of a versed sine by 1e-6 of its peak, and of a spectrum 0.2 / its largest omega.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) step: Option<Positive>,
     /// unit, that of a pulse's peak, of amplitudes or of a record's values: N if left out, or m/s² of an acceleration (of an AT2 file g).

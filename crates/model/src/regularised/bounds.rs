@@ -3,7 +3,8 @@
 mod stages;
 
 use super::{RegularisedContact, RegularisedState};
-use stages::{StageSeries, Stages, product};
+pub(super) use stages::product;
+use stages::{StageSeries, Stages};
 
 /// Orders of the derivatives that are bounded, 0 to 6.
 pub const ORDERS: usize = 7;
@@ -55,6 +56,8 @@ struct Series<const K: usize> {
 struct Bounds<'a> {
     /// On the sizes of `[q, w, x1, v1]`.
     state: [f64; 4],
+    /// The least q, where the speed into the wall follows the forces.
+    shallowest: f64,
     /// On that of `dw/dt`, where it is known better than by the sizes of the forces, which hold each other where a wall holds the damper.
     rate: f64,
     /// On the force, N.
@@ -93,6 +96,16 @@ impl RegularisedContact {
     /// Bounds between two states `h` (s/√m) apart; `None` if the piece is too long for the proof. They need nothing of the factor of a loss but that
     /// it lies between 0 and its largest, so that they hold where that factor turns too fast for the series: where `v` vanishes.
     pub fn change(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Option<Change> {
+        if self.overdamped {
+            let bounds = self.bounds_between(h, from, to)?;
+            let Series { growth, a1, rate, .. } = self.series::<2, true>(bounds);
+            let within = |[most, slope]: [f64; 2]| [most, 0.5 * h * slope];
+            return Some(Change {
+                states: growth.map(within),
+                rates: [growth[1], a1, growth[3], rate].map(within),
+                root: within([bounds.state[0], 0.5 * bounds.state[1]]),
+            });
+        }
         let ends: [f64; 4] = std::array::from_fn(|i| from[i].abs().max(to[i].abs()));
         let mut most = ends;
         let excitation = self.primary[0] * self.most_force();
@@ -146,7 +159,9 @@ impl RegularisedContact {
         let ends: [f64; 4] = std::array::from_fn(|i| from[i].abs().max(to[i].abs()));
         let stages =
             self.restoring.as_deref().map(|law| Stages::of(law, [from, to].map(|y| self.stage(law, y))));
-        let mut bounds = Bounds { state: ends, rate: f64::INFINITY, force: self.most_force(), stages };
+        let shallowest = from[0].min(to[0]);
+        let mut bounds =
+            Bounds { state: ends, shallowest, rate: f64::INFINITY, force: self.most_force(), stages };
         let mut farther = [f64::INFINITY; 2];
         for _ in 0..8 {
             let series = self.series::<2, false>(bounds);
@@ -155,8 +170,16 @@ impl RegularisedContact {
             let reach: [f64; 4] = std::array::from_fn(|i| ends[i] + 0.5 * h * slopes[i]);
             let reached = stages.map(|stages| stages.widened(series.stages, 0.5 * h));
             let staged = bounds.stages.zip(reached).is_none_or(|(bounds, reached)| bounds.hold(&reached));
-            if staged && (0..4).all(|i| reach[i] <= bounds.state[i]) {
+            let least = shallowest - 0.5 * h * slopes[0];
+            let away = !self.overdamped || least >= bounds.shallowest;
+            if staged && away && (0..4).all(|i| reach[i] <= bounds.state[i]) {
                 return Some(bounds);
+            }
+            if !away {
+                bounds.shallowest = least - 0.05 * (shallowest - least);
+                if bounds.shallowest <= 0.0 {
+                    return None;
+                }
             }
             // Once they grow faster and faster there is no end.
             let by = [0, 1].map(|i| reach[i] - bounds.state[i]);
@@ -180,7 +203,7 @@ impl RegularisedContact {
     /// take from it. `U` is convex, and no softer than the spring, so that at the start `ε² <= w² + (U' - a0)² / U''` with the least `U''` on the way to
     /// where `U' = a0`; and later `|w| <= ε`, `|U' - a0| <= √U'' ε` with the greatest, and `z` is at most `(ε0 + ε) / √spring` from where it was.
     fn bounds_by_energy(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Option<Bounds<'_>> {
-        if self.restoring.is_some() {
+        if self.restoring.is_some() || self.overdamped {
             return None;
         }
         let [q0, w0, ..] = *from;
@@ -216,7 +239,7 @@ impl RegularisedContact {
             if (0..4).all(|i| reach[i] <= state[i]) {
                 let stiffest = stiffness(q.max(deepest.sqrt()));
                 let rate = stiffest.sqrt() * energy + change + lost(q, w);
-                return Some(Bounds { state, rate, force, stages: None });
+                return Some(Bounds { state, shallowest: 0.0, rate, force, stages: None });
             }
             for i in 0..4 {
                 state[i] = state[i].max(1.05 * reach[i]);
@@ -238,6 +261,7 @@ impl RegularisedContact {
         let mut excitation = start(bounds.force);
         let (mut z, mut stretch, mut cube, mut force) = ([0.0; K], [0.0; K], [0.0; K], [0.0; K]);
         let (mut rate, mut a1) = ([0.0; K], [0.0; K]);
+        let [mut faster, mut jerk, mut by_q] = [[0.0; K]; 3]; // w'' and a1', in time; 1/q
         let mut stages = bounds.stages.map(StageSeries::new);
         for k in 0..K {
             z[k] = product(&q, &q, k);
@@ -248,6 +272,16 @@ impl RegularisedContact {
                 None => self.law[0] * cube[k],
             };
             stretch[k] = z[k] + if k == 0 { self.stretch.abs() } else { 0.0 };
+            if self.overdamped {
+                by_q[k] = match k {
+                    0 => 1.0 / bounds.shallowest,
+                    _ => by_q[0] * (1..=k).map(|i| q[i] * by_q[k - i]).sum::<f64>(),
+                };
+                let parts = [cube[k], stretch[k], self.primary[0] * excitation[k]];
+                let speed = [&mut w, &mut rate, &mut faster];
+                self.follow(k, parts, [&q, &x1, &v1, &by_q], speed, [&mut a1, &mut jerk]);
+                w[0] = w[0].min(w0);
+            }
             if k + 1 == K && !IF_RATES {
                 break;
             }
@@ -257,7 +291,9 @@ impl RegularisedContact {
             // A force that accelerates both bodies alike is not felt between them.
             let apart =
                 if self.felt == 0.0 { self.primary[1] * v1[k] + self.primary[2] * x1[k] } else { outside };
-            (a1[k], rate[k]) = (outside + push(0), apart + push(1));
+            if !self.overdamped {
+                (a1[k], rate[k]) = (outside + push(0), apart + push(1));
+            }
             if k == 0 {
                 rate[0] = rate[0].min(bounds.rate);
             }

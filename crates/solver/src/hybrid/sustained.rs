@@ -19,7 +19,8 @@ impl Hybrid<'_> {
         to: f64,
         observer: &mut impl Observer<4>,
     ) -> Result<End, SolverError> {
-        let limits = (self.system, self.rtol, self.budget);
+        let follows = self.reduced.is_some() && !observer.follows_contacts();
+        let limits = (self.system, self.rtol, self.budget, follows);
         integrate(equations, from, regularised, to, limits, &mut self.work, observer)
     }
 

@@ -86,8 +86,9 @@ pub trait Observer<const N: usize> {
     fn touch_down(&mut self, _t: f64, _side: Side) {}
     /// The damper has struck a rigid wall: between two segments the state jumps.
     fn impact(&mut self, _impact: &Impact<N>) {}
-    /// Whether it follows every piece of a contact that loses energy: such a contact is then integrated step by step, in fewer pieces.
-    fn follows_losses(&self) -> bool {
+    /// Whether it follows every piece of a contact: one that loses energy is then integrated step by step, in fewer pieces, and from none is the
+    /// fast part of a strong dashpot left out.
+    fn follows_contacts(&self) -> bool {
         false
     }
     /// The force or its slope jumps between two segments, or a fast part of the motion is left out from here on: rates before are not
@@ -135,8 +136,8 @@ impl<const N: usize, A: Observer<N>, B: Observer<N>> Observer<N> for (A, B) {
         self.0.impact(impact);
         self.1.impact(impact);
     }
-    fn follows_losses(&self) -> bool {
-        self.0.follows_losses() || self.1.follows_losses()
+    fn follows_contacts(&self) -> bool {
+        self.0.follows_contacts() || self.1.follows_contacts()
     }
     fn seam(&mut self) {
         self.0.seam();
@@ -170,8 +171,8 @@ impl<const N: usize, O: Observer<N>> Observer<N> for &mut O {
     fn impact(&mut self, impact: &Impact<N>) {
         (**self).impact(impact);
     }
-    fn follows_losses(&self) -> bool {
-        (**self).follows_losses()
+    fn follows_contacts(&self) -> bool {
+        (**self).follows_contacts()
     }
     fn seam(&mut self) {
         (**self).seam();
@@ -207,8 +208,8 @@ macro_rules! for_each_in {
             fn impact(&mut self, impact: &Impact<N>) {
                 self.iter_mut().for_each(|observer| observer.impact(impact));
             }
-            fn follows_losses(&self) -> bool {
-                self.iter().any(|observer| observer.follows_losses())
+            fn follows_contacts(&self) -> bool {
+                self.iter().any(|observer| observer.follows_contacts())
             }
             fn seam(&mut self) {
                 self.iter_mut().for_each(Observer::seam);

@@ -259,7 +259,7 @@ impl Observer<4> for Course<'_> {
         self.struck.is_some()
     }
     /// The force of a lossy contact is not a function of the depths alone, so that [`Path::linearised`] does not hold for it.
-    fn follows_losses(&self) -> bool {
+    fn follows_contacts(&self) -> bool {
         true
     }
     fn path(&mut self, path: &impl Path<4>) {

@@ -62,7 +62,8 @@ fn lossy(draw: &mut Spread) -> Numbers {
     Numbers { e, e_obstacle: (draw.unit() < 0.5).then_some(other), ..numbers }
 }
 
-/// A damper that its spring, up to 3000 times as stiff as an engineer's, holds to a wall for half of each period; one in three with λ.
+/// A damper that its spring, up to 3000 times as stiff as an engineer's, holds to a wall for half of each period; one in three with λ, and one in
+/// nine with a dashpot up to 2500 times as strong.
 fn held(draw: &mut Spread) -> Numbers {
     let numbers = Numbers {
         k2: draw.logarithmic(1e3, 1e7),
@@ -72,6 +73,8 @@ fn held(draw: &mut Spread) -> Numbers {
     };
     if draw.unit() < 1.0 / 3.0 {
         Numbers { lambda: draw.logarithmic(1e-3, 100.0), ..numbers }
+    } else if draw.unit() < 1.0 / 6.0 {
+        Numbers { c2: draw.logarithmic(1e4, 1e6), ..numbers }
     } else {
         numbers
     }

@@ -13,7 +13,7 @@ use crate::loss::{Restoring, Stage};
 
 /// Term `k` of the product of two series.
 #[inline(always)]
-pub(super) fn product<const K: usize>(a: &[f64; K], b: &[f64; K], k: usize) -> f64 {
+pub(in crate::regularised) fn product<const K: usize>(a: &[f64; K], b: &[f64; K], k: usize) -> f64 {
     let mut sum = 0.0;
     for i in 0..K.min(k + 1) {
         sum += a[i] * b[k - i];

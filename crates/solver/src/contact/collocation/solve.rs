@@ -63,7 +63,7 @@ impl Collisions {
         observer: &mut impl Observer<4>,
     ) -> Option<(Knot<4>, u64)> {
         if self.equations.is_lossy() {
-            let loss = self.loss.as_ref().filter(|_| !observer.follows_losses())?;
+            let loss = self.loss.as_ref().filter(|_| !observer.follows_contacts())?;
             return self.collide_lossy(loss, flow, touch, to, bends, observer);
         }
         let (few, some, many) = &*RULES;

@@ -54,7 +54,7 @@ fn step_by_step(system: &Coupled, side: Side, touch: &Knot<4>) -> Knot<4> {
     let equations = system.regularised_contact(side);
     let mut regularised = equations.regularise(&touch.y);
     let budget = Budget::new(Pace::Steps, 100_000, Work::default(), [0.0, 1e9]);
-    let (limits, mut work) = ((system, 1e-13, budget), Work::default());
+    let (limits, mut work) = ((system, 1e-13, budget, false), Work::default());
     let mut from = *touch;
     loop {
         // It begins anew where the force bends.
@@ -195,7 +195,7 @@ impl Observer<4> for Compare<'_> {
             let mut find = Find { t: seen.t, y: None };
             let mut work = Work::default();
             let budget = Budget::new(Pace::Steps, 100_000, Work::default(), [0.0, 1e9]);
-            let limits = (self.system, 1e-13, budget);
+            let limits = (self.system, 1e-13, budget, false);
             let _ = integrate(
                 equations.clone(),
                 &self.touch,

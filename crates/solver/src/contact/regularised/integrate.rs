@@ -21,7 +21,8 @@ pub enum End {
 /// Integrates a contact that begins (or goes on) at `from`, regularised `y`, until lift-off or time `to`.
 ///
 /// `rtol` is the error allowed in a step, relative to the largest `q` and the largest speed of this contact; in a sustained contact,
-/// relative to the recent ones.
+/// relative to the recent ones. Where the last of the limits says so, the speed follows the forces once a strong dashpot's fast part of the motion has
+/// decayed.
 ///
 /// # Errors
 /// [`SolverError`] with the time reached: the step underflows, the state is not finite, or the work is more than allowed.
@@ -31,7 +32,7 @@ pub fn integrate(
     from: &Knot<4>,
     y: RegularisedState,
     to: f64,
-    (system, rtol, budget): (&Coupled, f64, Budget),
+    (system, rtol, budget, follows): (&Coupled, f64, Budget, bool),
     work: &mut Work,
     observer: &mut impl Observer<4>,
 ) -> Result<End, SolverError> {
@@ -43,6 +44,9 @@ pub fn integrate(
     let mut contact =
         Contact { shortest, touch_down: from.t, equations, is_soft, to, rtol, budget, plan, start, y };
     loop {
+        if follows && contact.turns() {
+            observer.seam();
+        }
         let Accepted { slope, length, next, end, is_last, lifts_off, parts } =
             contact.step(work, observer.looks())?;
         let piece = Piece {
@@ -107,6 +111,27 @@ struct Accepted {
 }
 
 impl Contact {
+    /// Leaves out the fast part of the motion if it has decayed, or takes it in again where the speed can no longer follow the forces; returns whether
+    /// it did either.
+    #[cold]
+    fn turns(&mut self) -> bool {
+        let Self { equations, y, plan, rtol, .. } = self;
+        equations.set_excitation(y[TIME], self.start.excitation);
+        let following = equations.following(y);
+        let (accurate, speed) = (equations.error_of_following(y, &following) <= *rtol, following.speed[0]);
+        if equations.is_overdamped() == accurate
+            || (accurate && (speed - y[W]).abs() > plan.least_speed(*rtol))
+        {
+            return false;
+        }
+        equations.set_overdamped(accurate);
+        if accurate {
+            y[W] = speed;
+        }
+        *plan = Plan::new(equations, y, *rtol);
+        true
+    }
+
     /// The next step, of the length that its error allows. It is compiled once, not once for every observer.
     fn step(&mut self, work: &mut Work, looks: u64) -> Result<Accepted, SolverError> {
         let Self { equations, plan, y, rtol, touch_down, .. } = self;
@@ -121,7 +146,12 @@ impl Contact {
             let reach = equations.turn() / turning;
             // A step aimed at the wall if that is near enough; the aim may be rough (see `reach_wall`).
             let planned = unhindered.min(reach);
-            let left = if y[W] < 0.0 { equations.theta_to_wall(y) } else { f64::INFINITY };
+            // The equations of a speed that follows the forces end before the wall: such a step may come to half of q.
+            let left = match y[W] {
+                w if w < 0.0 && equations.is_overdamped() => -y[Q] / w,
+                w if w < 0.0 => equations.theta_to_wall(y),
+                _ => f64::INFINITY,
+            };
             let h = if left < (1.2 * planned).min(reach) { left } else { planned };
             let slope = equations.derivative(y);
             let tried = step(equations, y, &slope, h);
@@ -129,7 +159,7 @@ impl Contact {
             let error = plan.error(h, &tried, rtol);
             let t = touch_down + y[TIME];
             let shortened = (h / unhindered).min(1.0);
-            let lifting = tried.y[W] < 0.0 && tried.y[Q] < 0.02 * plan.q;
+            let lifting = tried.y[W] < 0.0 && tried.y[Q] < 0.02 * plan.q && !equations.is_overdamped();
             let wall = if lifting { reach_wall(equations, &tried.y, plan, rtol, work) } else { None };
             // The length of the last step if it goes on to the wall: it may hardly be longer than the one tried.
             let to_wall = |wall: &RegularisedState| h - 4.0 * tried.y[Q] / (tried.y[W] + wall[W]); // dq/dθ = w/2

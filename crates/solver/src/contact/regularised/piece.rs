@@ -2,7 +2,7 @@
 
 use crate::methods::dop853::{self, Step};
 use crate::motion::form::{Form, QUINTIC};
-use crate::motion::knot::Knot;
+use crate::motion::knot::{Jet, Knot};
 use crate::motion::segment::Segment;
 use retune_model::{Growth, ORDERS, RegularisedContact, RegularisedState};
 use std::cell::OnceCell;
@@ -42,7 +42,7 @@ pub fn knot(equations: &RegularisedContact, touch_down: f64, y: &RegularisedStat
     }
 }
 
-/// One step of DOP853 from `y`, with the derivative `slope` there.
+/// One step of DOP853 from `y`, with the derivative `slope` there. A speed that follows the forces does so at its end.
 #[inline(always)]
 pub fn step(
     equations: &RegularisedContact,
@@ -50,7 +50,11 @@ pub fn step(
     slope: &RegularisedState,
     h: f64,
 ) -> Step<5> {
-    dop853::step(|y| equations.derivative(y), y, slope, h)
+    let mut step = dop853::step(|y| equations.derivative(y), y, slope, h);
+    if equations.is_overdamped() {
+        step.y[W] = equations.following(&step.y).speed[0];
+    }
+    step
 }
 
 impl Segment<4> for Piece<'_> {
@@ -73,6 +77,12 @@ impl Segment<4> for Piece<'_> {
     fn in_flight(&self) -> bool {
         self.equations.has_no_force()
     }
+    fn jet(&self, at: &Knot<4>) -> Option<Jet<4>> {
+        self.equations.is_overdamped().then(|| {
+            let (states, force) = self.equations.jet(&self.state(at));
+            Jet { states, force }
+        })
+    }
     fn quintic_error(&self, form: &Form<4>, ends: [&Knot<4>; 2], h: f64, _sharp: bool) -> Option<f64> {
         let own;
         let [growth, rates] = if h == self.length {
@@ -85,24 +95,22 @@ impl Segment<4> for Piece<'_> {
     }
 
     fn rise(&self, form: &Form<4>, ends: [&Knot<4>; 2], slopes: [f64; 2], h: f64) -> f64 {
-        let [from, to] = self.states(ends);
+        let [from, to] = ends.map(|knot| self.state(knot));
         let change = self.equations.change(h, &from, &to);
         change.map_or(f64::INFINITY, |change| form.rise_between(&change, slopes, h))
     }
 }
 
 impl Piece<'_> {
-    /// The regularised states of two moments; `q` is taken from the clock, because it has lost digits in the state.
-    fn states(&self, ends: [&Knot<4>; 2]) -> [RegularisedState; 2] {
-        ends.map(|knot| {
-            let [_, w, x1, v1, _] = self.equations.regularise(&knot.y);
-            [knot.clock[0], w, x1, v1, knot.t - self.touch_down]
-        })
+    /// The regularised state of a moment; `q` is taken from the clock, because it has lost digits in the state.
+    fn state(&self, knot: &Knot<4>) -> RegularisedState {
+        let [_, w, x1, v1, _] = self.equations.regularise(&knot.y);
+        [knot.clock[0], w, x1, v1, knot.t - self.touch_down]
     }
 
     /// Bounds between two places `h` apart; those of the rates where a form needs them.
     fn growth(&self, form: &Form<4>, ends: [&Knot<4>; 2], h: f64) -> [Growth<ORDERS>; 2] {
-        let [from, to] = self.states(ends);
+        let [from, to] = ends.map(|knot| self.state(knot));
         if form.is_rated() {
             self.equations.growth_of_rates(h, &from, &to)
         } else {

@@ -55,6 +55,11 @@ impl Plan {
         self.h * (1.0 + 1.1 * farther)
     }
 
+    /// The error allowed of a speed, m/s.
+    pub fn least_speed(&self, rtol: f64) -> f64 {
+        rtol * self.w.max(self.rounding)
+    }
+
     /// The error of a step over what is allowed, `rtol` of the largest `q` and speeds.
     #[inline(always)]
     pub fn error(&self, h: f64, step: &Step<5>, rtol: f64) -> f64 {
