@@ -75,7 +75,7 @@ impl Candidate {
     }
 
     /// The same with its largest values from rest on.
-    pub fn from_rest_on(self) -> Result<Self, Unusable> {
+    pub fn with_start(self) -> Result<Self, Unusable> {
         let Study { scene, solver, .. } = &self.study;
         let goal = self.study.goal();
         let asked = (&self.steady, told(&goal.limits));

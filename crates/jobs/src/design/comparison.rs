@@ -131,7 +131,7 @@ fn striking<'a>(
         let place = |parameter: Parameter| Parameter::PAPER.iter().position(|own| *own == parameter);
         let study = with(study, |parameter| place(parameter).map_or(f64::NAN, |i| end[i]))?;
         let steady = Candidate::new(What::Ssvi, &study).ok();
-        let all = steady.and_then(|of| if of.strikes() { Some(of) } else { of.from_rest_on().ok() });
+        let all = steady.and_then(|of| if of.strikes() { Some(of) } else { of.with_start().ok() });
         Ok(all.filter(Candidate::strikes).map(|candidate| (*value, candidate)))
     };
     found.ends.iter().filter_map(move |end| measured(end).transpose())
@@ -242,7 +242,7 @@ pub(super) fn compare(
         Some(_) => Some(certified(&tmd.study)?),
         None => None,
     };
-    let whole = |of: Candidate| if Some(of.what) == choice { of.from_rest_on() } else { Ok(of) };
+    let whole = |of: Candidate| if Some(of.what) == choice { of.with_start() } else { Ok(of) };
     Ok(Comparison {
         goal,
         none,
