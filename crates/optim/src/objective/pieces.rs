@@ -40,8 +40,8 @@ const STEP: f64 = 1e-6;
 type Kind = (Measure, Window, Option<f64>);
 
 impl Goal {
-    /// Whether its value is the largest of peaks, each with derivatives by [`Self::pieces`]: that of no sum, of no ensemble, of no random motion, of no decay time and of no motion
-    /// but those from rest and the steady one.
+    /// Whether its value is the largest of peaks, each with derivatives by [`Self::pieces`]: that of no sum, of no ensemble, of no random motion,
+    /// of no decay time and of no motion but those from rest and the steady one.
     pub fn has_pieces(&self) -> bool {
         let Objective { sum, ensemble, response, records, .. } = &self.objective;
         sum.is_empty()
