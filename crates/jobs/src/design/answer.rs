@@ -5,7 +5,9 @@ use super::candidate::{Candidate, What};
 use super::comparison::Comparison;
 use super::requirements::{Constraint, Dampers, Requirements};
 use super::ssvi::is_lossy;
-use super::words::{alike, broken_at_spaces, frequency, legible, limit, parameters, percent, sized, tuning};
+use super::words::{
+    alike, as_much, broken_at_spaces, frequency, legible, limit, parameters, percent, sized, tuning,
+};
 use retune_model::Measure;
 use retune_optim::{Limit, Need};
 use retune_study::{counted, rounded};
@@ -129,10 +131,10 @@ pub(super) fn build(requirements: &Requirements, compared: &Comparison) -> Vec<S
             }
         }
         (What::Tmd, Some(ssvi), _) => {
-            let (has, times) = (said(ssvi.goal), rounded(ssvi.goal / chosen.goal, 3));
+            let (has, as_much) = (said(ssvi.goal), as_much(ssvi.goal / chosen.goal));
             let force = sized(ssvi.value(Measure::ContactForce), "N");
             format!(
-                "; the best SSVI NES that was found has {has}, {times} times as much, and strikes its walls with {force}"
+                "; the best SSVI NES that was found has {has}, {as_much}, and strikes its walls with {force}"
             )
         }
         (What::Tmd, None, _) => {
@@ -140,8 +142,8 @@ pub(super) fn build(requirements: &Requirements, compared: &Comparison) -> Vec<S
         }
         (_, _, Dampers::Ssvi) => format!("; the best TMD has {}", said(compared.tmd.goal)),
         _ if compared.tmd.feasible => {
-            let (has, times) = (said(compared.tmd.goal), rounded(compared.tmd.goal / chosen.goal, 3));
-            format!("; the best TMD has {has}, {times} times as much")
+            let (has, as_much) = (said(compared.tmd.goal), as_much(compared.tmd.goal / chosen.goal));
+            format!("; the best TMD has {has}, {as_much}")
         }
         _ => "; no TMD of this mass keeps the limits".to_owned(),
     };
