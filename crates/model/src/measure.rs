@@ -71,9 +71,13 @@ impl Measure {
             Self::Velocity => ["v1max", "v1", "the largest velocity of the structure", "m/s"],
             Self::Acceleration => ["a1max", "a1", "the largest acceleration of the structure", "m/s²"],
             Self::GroundForce => ["ground_force", "ground", "the largest force on the ground", "N"],
-            Self::Stroke => ["stroke", "stroke", "the largest stroke of the damper", "m"],
-            Self::ContactForce => ["contact_force", "walls", "the largest contact force", "N"],
-            Self::ContactPressure => ["contact_pressure", "pressure", "the largest contact pressure", "Pa"],
+            Self::Stroke => ["stroke", "stroke", "the largest deflection of the damper's spring", "m"],
+            Self::ContactForce => {
+                ["contact_force", "walls", "the largest force between damper and wall", "N"]
+            }
+            Self::ContactPressure => {
+                ["contact_pressure", "pressure", "the largest pressure between damper and wall", "Pa"]
+            }
             Self::DecayTime => [
                 "decay_time",
                 "decay",

@@ -1,4 +1,4 @@
-"""The package itself: its tag, its size, what it shows, what it documents."""
+"""The package itself: its tag, what it shows, what it documents."""
 
 from __future__ import annotations
 
@@ -21,10 +21,9 @@ import retune as rt
 from retune import _run, _scene
 
 
-def test_contract_the_wheel_is_for_every_later_python_and_small() -> None:
+def test_contract_the_wheel_is_for_every_later_python() -> None:
     (wheel,) = (ROOT / "target" / "wheels").glob("retune_dampers-*.whl")
     assert re.fullmatch(r"retune_dampers-[\d.]+-cp311-abi3-\w+\.whl", wheel.name), wheel.name
-    assert wheel.stat().st_size <= 6.5e6  # with the program
     assert Path(rt.__file__).with_name("py.typed").is_file()
     assert rt.__version__ == tomllib.loads((ROOT / "Cargo.toml").read_text())["workspace"]["package"]["version"]
 
