@@ -228,7 +228,7 @@ pub(super) fn findings(requirements: &Requirements, compared: &Comparison) -> Ve
         let walls = requirements.contact().map(|contact| contact.stiffness().map(|k| format!("{k:.2e}")));
         let [k1, k3] = walls.unwrap_or_default();
         let origin = requirements.wall.map_or(
-            "not given (--wall): the paper's, scaled to mass and frequency".to_owned(),
+            "not given (--wall): the paper's, scaled to mass, frequency and displacement".to_owned(),
             |wall| {
                 let (radius, modulus) = (sized(wall.radius, "m"), sized(wall.modulus, "Pa"));
                 let loss =

@@ -296,6 +296,21 @@ fn exact_walls_in_words_are_their_numbers() {
     assert_eq!(steel["loss"], json!({ "restitution": 0.7 }));
 }
 
+/// Walls that are not given are those of a similar structure: with 8 times the mass, thrice the frequency and a quarter of the displacements
+/// `K z^1.5` has the share of `m ω² z` that it had.
+#[test]
+fn invariant_walls_that_are_not_given_are_similar_on_similar_structures() {
+    let of = |m1: f64, f1: f64, force: f64| {
+        let floor = json!({ "m1": m1, "f1": format!("{f1} Hz"), "zeta": "2%", "force": force, "mass": "2%" });
+        good(good(asked(floor).requirements()).contact()).stiffness()
+    };
+    let (own, other) = (of(1000.0, 2.0, 300.0), of(8000.0, 6.0, 300.0 * 8.0 * 9.0 / 4.0));
+    for (own, other) in own.into_iter().zip(other) {
+        let expected = own * 8.0 * 9.0 * 2.0;
+        assert!((other / expected - 1.0).abs() < 1e-12, "{own} {other}");
+    }
+}
+
 /// The energy that a short shock leaves is there before a damper has moved: nobody is told to build one.
 #[test]
 fn regress_a_damper_that_does_nothing_is_not_recommended() {
