@@ -317,7 +317,7 @@ def try_it(program, shots):
     page.js("(e => { e.value = 'stroke'; e.dispatchEvent(new Event('change')); })(document.getElementById('quantity'))")
     page.known()
     explained = page.text("#response-part")
-    checks.that("curves of another quantity say what they are of", explained == "The largest stroke of the damper, from rest on.", explained)
+    checks.that("curves of another quantity say what they are of", explained == "The largest deflection of the damper's spring, from rest on.", explained)
     checks.that("there is none without a damper", "no damper" not in page.text("#response-key"), page.text("#response-key"))
     page.js("document.querySelector('[data-write=report]').click()")
     report = saved_text("ssvi-explored.html")
