@@ -278,6 +278,14 @@ pub fn how_many(times: f64) -> String {
     if times >= 1e6 { "over a million".to_owned() } else { rounded(times, 3) }
 }
 
+/// A ratio to what it is compared with, in three digits.
+pub fn as_much(ratio: f64) -> String {
+    match how_many(ratio).as_str() {
+        "1" => "as much".to_owned(),
+        times => format!("{times} times as much"),
+    }
+}
+
 /// A damper as in the paper's Table 2: m2 (kg) and its design.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct TunedDamper {

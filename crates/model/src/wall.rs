@@ -189,6 +189,10 @@ pub struct Surfaces {
     pub density: Option<Positive>,
 }
 
+/// √(k1/m1) of the paper's structure, rad/s, and its largest displacement without a damper over 5 to 8 rad/s, m, both to 0.1 %.
+const PAPER_OMEGA: f64 = 6.285;
+const PAPER_REACH: f64 = 0.2816;
+
 impl Surfaces {
     /// The walls of a damper for which none are given: the surfaces of the paper's damper of 60 kg, their moduli in proportion to the mass
     /// (kg). A contact then lasts as long, and is as deep, as one of the paper's at the same speed.
@@ -215,6 +219,16 @@ impl Surfaces {
             strength: None,
             density: None,
         })
+    }
+
+    /// The same where the structure is not like the paper's: `omega` is its √(k1/m1), rad/s, and `reach` its largest displacement without a
+    /// damper, m. `K z^1.5` is as large a share of `m ω² z` as there, at depths `z` that are as large a share of `reach`.
+    ///
+    /// # Errors
+    /// A modulus is beyond the numbers.
+    pub fn for_motion(mass: Positive, omega: f64, reach: f64) -> Result<Self, OutOfRange> {
+        let scale = (omega / PAPER_OMEGA).powi(2) / (reach / PAPER_REACH).sqrt();
+        Self::for_mass(Positive::new(mass.get() * scale)?)
     }
 
     /// Hertz stiffnesses `[K1, K3]` of the contacts with the primary structure and with the obstacle, N/m^1.5.
@@ -252,6 +266,7 @@ impl Surfaces {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Bare, Forcing, Measure, NonNegative, Primary};
 
     /// A cube of 8 kg of 1000 kg/m³ is 0.2 m wide; where E = 10 MPa is softer, its waves go at 100 m/s.
     #[test]
@@ -264,6 +279,19 @@ mod tests {
         surfaces.density = Some(number(1000.0));
         for (time, expected) in surfaces.waves(8.0).expect("times").into_iter().zip([4e-3, 2e-3]) {
             assert!((time / expected - 1.0).abs() < 1e-14, "{time} {expected}");
+        }
+    }
+
+    /// Equation (1) with the numbers of the paper's section 3.
+    #[test]
+    fn paper_walls_are_scaled_from_its_structure() {
+        let number = |value| NonNegative::new(value).expect("not below 0");
+        let mass = Positive::new(1000.0).expect("above 0");
+        let primary = Primary { mass, damping: number(452.0), stiffness: number(39500.0) };
+        let bare = Bare::new(&primary, &Forcing::force(number(800.0), number(6.0)));
+        let reach = bare.steady_max(Measure::Displacement, [5.0, 8.0]).value;
+        for (own, paper) in [(primary.natural_frequency(), PAPER_OMEGA), (reach, PAPER_REACH)] {
+            assert!((own / paper - 1.0).abs() < 1e-3, "{own} {paper}");
         }
     }
 

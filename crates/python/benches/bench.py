@@ -46,7 +46,7 @@ def in_rust(problem: rt.Problem, X: np.ndarray, threads: int, turns: int = TURNS
     file = Path(tempfile.mkdtemp()) / "study.json"
     file.write_text(json.dumps(problem.study))
     lines = "\n".join(" ".join(repr(float(value)) for value in row) for row in X)
-    program = ROOT / "target" / "release" / "examples" / "rust_batch"
+    program = ROOT / "target" / "wheel" / "examples" / "rust_batch"
 
     def measure() -> float:
         command = [program, file, str(threads), str(turns)]

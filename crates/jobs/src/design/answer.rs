@@ -5,9 +5,8 @@ use super::candidate::{Candidate, What};
 use super::comparison::Comparison;
 use super::requirements::{Constraint, Dampers, Requirements};
 use super::ssvi::is_lossy;
-use super::words::{
-    alike, as_much, broken_at_spaces, frequency, legible, limit, parameters, percent, sized, tuning,
-};
+use super::words::{alike, broken_at_spaces, frequency, legible, limit, parameters, percent, sized, tuning};
+use crate::summary::as_much;
 use retune_model::Measure;
 use retune_optim::{Limit, Need};
 use retune_study::{counted, rounded};

@@ -117,9 +117,6 @@ impl Constraint {
     }
 }
 
-/// √(k1/m1) of the paper's structure, rad/s, and its largest displacement without a damper, m: its walls are scaled by them.
-const PAPER: f64 = 6.285;
-const PAPER_REACH: f64 = 0.2816;
 /// Periods of the natural frequency before a run of an SSVI NES counts, and all of them.
 const PASSED: f64 = 50.0;
 const PERIODS: f64 = 100.0;
@@ -281,15 +278,14 @@ impl Requirements {
         TAU / self.natural_frequency()
     }
 
-    /// The walls of the damper. Where none are given they are the paper's, with moduli scaled to the mass, to the square of the natural
-    /// frequency and, as Hertz's stiffness grows with the root of the depth, to that of the displacements: a contact takes as large a share
-    /// of a period, and is as deep a part of the motion, as there.
+    /// The walls of the damper. Where none are given they are those of the paper on a similar structure.
     pub fn contact(&self) -> Result<Surfaces, Error> {
-        let (_, reach, _) = self.scales()?;
-        let size = if reach > 0.0 && reach.is_finite() { reach / PAPER_REACH } else { 1.0 };
-        let scale = (self.natural_frequency() / PAPER).powi(2) / size.sqrt();
-        let paper = Surfaces::for_mass(Positive::new(self.mass * scale)?)?;
-        let Some(Wall { radius, modulus, poisson, restitution }) = self.wall else { return Ok(paper) };
+        let mass = Positive::new(self.mass)?;
+        let Some(Wall { radius, modulus, poisson, restitution }) = self.wall else {
+            let (_, reach, _) = self.scales()?;
+            return Ok(Surfaces::for_motion(mass, self.natural_frequency(), reach)?);
+        };
+        let paper = Surfaces::for_mass(mass)?;
         let (radius, own, steel) = (Positive::new(radius)?, Positive::new(modulus)?, Positive::new(STEEL)?);
         let poisson = PoissonRatio::new(poisson)?;
         let loss = restitution.map(Restitution::new).transpose()?.map_or(paper.loss, Loss::Restoring);

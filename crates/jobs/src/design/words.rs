@@ -17,14 +17,6 @@ pub(super) fn sized(value: f64, si: &'static str) -> String {
     format!("{} {unit}", rounded(number, 4))
 }
 
-/// A ratio to what it is compared with, to three digits.
-pub(super) fn as_much(ratio: f64) -> String {
-    match rounded(ratio, 3).as_str() {
-        "1" => "as much".to_owned(),
-        times => format!("{times} times as much"),
-    }
-}
-
 /// Values in an SI unit, to four digits, in the unit in which the largest of them reads best.
 pub(super) fn alike(values: &[f64], si: &'static str) -> Vec<String> {
     let largest = values.iter().copied().filter(|value| value.is_finite()).fold(0.0, f64::max);

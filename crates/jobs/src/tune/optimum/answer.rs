@@ -5,7 +5,7 @@ use super::{DescentNote, Optimum, PassedOver, RunNote, Valley, stop_words};
 use crate::amount::Amount;
 use crate::certify::Verdict;
 use crate::needs::Needs;
-use crate::summary::how_many;
+use crate::summary::as_much;
 use retune_model::Parameter;
 use retune_study::{counted, frequency, rounded, short};
 use std::path::Path;
@@ -115,10 +115,9 @@ impl Optimum {
 
     /// The structure without a damper, and with the damper that the study began with.
     fn compared(&self) -> String {
-        let times = |other: Amount| match how_many(other.value / self.value.value).as_str() {
-            _ if !other.value.is_finite() => "without bound".to_owned(),
-            "1" => format!("{} (as much)", other.words()),
-            times => format!("{} ({times} times as much)", other.words()),
+        let times = |other: Amount| match other.value.is_finite() {
+            true => format!("{} ({})", other.words(), as_much(other.value / self.value.value)),
+            false => "without bound".to_owned(),
         };
         let study = if self.study.value.is_nan() {
             format!("no value with {}", self.baseline)
