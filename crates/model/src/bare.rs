@@ -1,6 +1,6 @@
 //! The primary structure alone: equation (1) without a damper, one degree of freedom.
 
-use crate::{EvenForce, Excitation, Forcing, History, Of, Primary, Source, Start, Stretch};
+use crate::{Excitation, Forcing, History, Of, Primary, SampledForce, Source, Start, Stretch};
 use nalgebra::{Complex, SMatrix};
 
 /// The bare primary structure. Its state is `[x1, v1]` (m, m/s).
@@ -117,10 +117,10 @@ impl Bare {
         [f * cos - s * sin, s * cos + f * sin]
     }
 
-    /// The samples of an equidistant record.
-    pub fn even_force(&self) -> Option<EvenForce> {
+    /// The samples of a force that has some.
+    pub fn sampled_force(&self) -> Option<SampledForce> {
         let history = self.history()?;
-        EvenForce::new(history.course.samples()?, self.force_of(history))
+        Some(SampledForce::new(history.course.samples()?, self.force_of(history)))
     }
 
     /// Until when they set the steps of a flight, s, see [`Course::paced_until`](crate::Course::paced_until).

@@ -89,7 +89,7 @@ pub use mode::{Mode, left_out, most_felt};
 pub use parameter::Parameter;
 pub use parameter::place::{Absent, Unsettable};
 pub use per_variable::PerVariable;
-pub use record::{BadSamples, Column, EvenForce, Record, RecordFile, Samples, Spacing};
+pub use record::{BadSamples, Column, Record, RecordFile, SampledForce, Samples, Spacing};
 pub use regularised::bounds::{Change, Growth, ORDERS, OverContact};
 pub use regularised::{RegularisedContact, RegularisedState};
 pub use rms::Rms;

@@ -321,33 +321,34 @@ impl Samples {
     }
 }
 
-/// The equidistant samples of a force.
+/// The samples of a force.
 #[derive(Clone, Copy, Debug)]
-pub struct EvenForce {
-    /// The first time and the time between two, s.
-    pub even: [f64; 2],
+pub struct SampledForce {
     samples: Samples,
     /// The force of a value of 1, N.
     unit: f64,
 }
 
-impl EvenForce {
-    /// The force of some samples; none if they are not equidistant.
-    pub(crate) fn new(samples: Samples, unit: f64) -> Option<Self> {
-        Some(Self { even: samples.even()?, samples, unit })
+impl SampledForce {
+    /// The force of some samples, of which each counts so many newtons.
+    pub(crate) fn new(samples: Samples, unit: f64) -> Self {
+        Self { samples, unit }
     }
 
-    /// The time of a sample, s.
-    pub fn time(&self, i: usize) -> f64 {
-        let [first, step] = self.even;
-        first + i as f64 * step
+    /// The first time and the time between two, s, of equidistant samples.
+    pub fn even(&self) -> Option<[f64; 2]> {
+        self.samples.even()
     }
 
     /// The sample at exactly this time, s.
     pub fn at(&self, t: f64) -> Option<usize> {
-        let [first, step] = self.even;
-        let i = ((t - first) / step).round().max(0.0) as usize;
-        (self.time(i) == t).then_some(i)
+        self.samples.last_before(t).filter(|&i| self.samples.time(i) == t)
+    }
+
+    /// So many times from a sample on, s, if there are as many.
+    #[inline]
+    pub fn times<const K: usize>(&self, from: usize) -> Option<[f64; K]> {
+        (from + K <= self.samples.len()).then(|| std::array::from_fn(|i| self.samples.time(from + i)))
     }
 
     /// So many forces from a sample on, N, if there are as many.

@@ -4,6 +4,7 @@ use crate::error::SolverError;
 use crate::hybrid::contact_free::ContactFree;
 use crate::hybrid::propagator::{Hybrid, Motion, Phase};
 use crate::linear::flow::Flow;
+use crate::linear::pieces::longest_step;
 use crate::linear::reduced::Reduced;
 use crate::methods::onestep::Run;
 use crate::methods::{dop853::Dop853, euler::Euler, ode23::Ode23, ode23s::Ode23s, ode45::Ode45, rk4::Rk4};
@@ -29,7 +30,7 @@ pub fn least_steps(scene: &Scene, seconds: f64) -> f64 {
         Some(damper) => Flow::new(Coupled::new(primary, forcing, damper).linear(), seconds).step(),
     };
     // Each piece of a record is a step at least.
-    let over = step.min(bare.even_force().map_or(f64::INFINITY, |force| force.even[1]));
+    let over = longest_step(bare.sampled_force(), step);
     let paced = seconds.min(bare.paced_until());
     paced / over + (seconds - paced) / step
 }
@@ -39,8 +40,8 @@ pub fn least_steps(scene: &Scene, seconds: f64) -> f64 {
 pub fn leaves_out_a_fast_part(scene: &Scene, seconds: f64) -> bool {
     let Scene { primary, forcing, damper } = scene;
     let bare = Bare::new(primary, forcing);
-    let paced = bare.even_force().filter(|_| seconds <= bare.paced_until());
-    let longest = paced.map_or(seconds, |force| seconds.min(force.even[1]));
+    let paced = bare.sampled_force().filter(|_| seconds <= bare.paced_until());
+    let longest = longest_step(paced, seconds);
     match damper {
         None => Reduced::of(&Flow::new(bare.linear(), longest), longest).is_some(),
         Some(damper) => {

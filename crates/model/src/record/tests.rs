@@ -74,9 +74,12 @@ fn exact_scaled_and_coarser_samples_are_views_of_one_table() {
         for t in [0.0, 0.5, 0.6, 0.8, 1.0, 1.1, 1.5, 2.0] {
             assert_eq!(coarser.stretch(t), expected.stretch(t), "{t}");
         }
-        let force = |samples| EvenForce::new(samples, 2.0).map(|force| force.forces::<2>(1));
-        assert_eq!(force(coarser), times[1].eq(&0.75).then_some(Some([-24.0, -42.0])));
-        assert!(EvenForce::new(coarser, 1.0).is_none_or(|force| force.forces::<3>(1).is_none()));
+        let force = SampledForce::new(coarser, 2.0);
+        assert_eq!((force.forces(1), force.times(1)), (Some([-24.0, -42.0]), Some([times[2], times[4]])));
+        assert_eq!((force.forces::<3>(1), force.times::<3>(1)), (None, None));
+        for (t, sample) in [(0.0, None), (0.5, Some(0)), (times[1], None), (times[2], Some(1)), (2.0, None)] {
+            assert_eq!(force.at(t), sample, "{t}");
+        }
     }
     let samples = own(&[0.0, 1.0, 2.0], &[1.0, 2.0, 3.0]);
     assert_eq!(

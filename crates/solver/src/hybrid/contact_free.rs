@@ -6,7 +6,7 @@
 use crate::budget::Budget;
 use crate::error::SolverError;
 use crate::linear::flow::Flow;
-use crate::linear::pieces::{Block, PIECES, clock, forces, in_steps};
+use crate::linear::pieces::{Block, PIECES, Pieces, longest_step};
 use crate::linear::reduced::Reduced;
 use crate::linear::steps::{Step, StepClock, Steps};
 use crate::motion::knot::Knot;
@@ -19,7 +19,7 @@ use crate::response::{Extreme, Work};
 use crate::settings::Window;
 use crate::system::{Linear, LinearSystem};
 use nalgebra::Complex;
-use retune_model::{Coupled, EvenForce, Side};
+use retune_model::{Coupled, SampledForce, Side};
 
 /// A linear scene at a moment of its run.
 pub struct ContactFree<'a, S, const N: usize> {
@@ -27,8 +27,8 @@ pub struct ContactFree<'a, S, const N: usize> {
     flow: Flow<N>,
     /// The flow in longer steps, where a part of the motion decays so fast that it can be left out.
     reduced: Option<Box<Reduced<N>>>,
-    /// The record, if the flow takes a step for each of its pieces.
-    samples: Option<EvenForce>,
+    /// The record, if the flow can go over its pieces.
+    samples: Option<Pieces<N>>,
     now: Knot<N>,
     /// The longest step without samples, s.
     longest: f64,
@@ -41,14 +41,14 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
     /// The scene at t = 0; no step will be longer than `longest` (s).
     pub fn new(system: &'a S, longest: f64, max_steps: u64) -> Self {
         let now = Knot { t: 0.0, excitation: system.excitation(0.0), y: system.start(), clock: [1.0, 0.0] };
-        Self::over(system.structure().even_force(), system, now, longest, max_steps)
+        Self::over(system.structure().sampled_force(), system, now, longest, max_steps)
     }
 
     /// The scene at a moment, over these samples.
-    fn over(force: Option<EvenForce>, system: &'a S, now: Knot<N>, whole: f64, max_steps: u64) -> Self {
-        let longest = force.map_or(whole, |force| whole.min(force.even[1]));
+    fn over(force: Option<SampledForce>, system: &'a S, now: Knot<N>, whole: f64, max_steps: u64) -> Self {
+        let longest = longest_step(force, whole);
         let flow = Flow::new(system.linear(), longest);
-        let samples = in_steps(force, flow.step());
+        let samples = Pieces::of(force, &flow);
         let reduced = Reduced::of(&flow, longest).map(Box::new);
         Self { system, flow, reduced, samples, now, longest: whole, max_steps, work: Work::default() }
     }
@@ -93,23 +93,23 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
         }
     }
 
-    /// Steps from a sample of an equidistant record over whole pieces of it, at most to time `to`.
+    /// Steps from a sample of a record over whole pieces of it, at most to time `to`.
     fn over_samples(
         &mut self,
         to: f64,
         observer: &mut impl Observer<N>,
         budget: Budget,
     ) -> Result<(), SolverError> {
-        let Some(force) = self.samples else { return Ok(()) };
-        let Some(mut i) = force.at(self.now.t) else { return Ok(()) };
+        let Some(pieces) = &self.samples else { return Ok(()) };
+        let Some(mut i) = pieces.at(self.now.t) else { return Ok(()) };
         let growth = LANES as f64 * self.flow.step() * self.system.energy_norm_growth();
         // After pieces that were looked at one by one, so many are, before others are tried together.
         let mut together = i;
-        while let Some(forces) = forces(&force, i, to) {
+        loop {
             if i >= together {
                 let growth = growth * (PIECES / LANES) as f64;
                 let energy = self.system.energy_norm(&self.now.y) + growth;
-                let block = Block::new(&self.flow, &force, i, to, &self.now.y, energy);
+                let block = Block::new(&self.flow, pieces, i, to, &self.now.y, energy);
                 together = i + PIECES;
                 if let Some(block) = block.filter(|block| observer.skips(block)) {
                     i = together;
@@ -122,8 +122,9 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
                     continue;
                 }
             }
+            let Some(four) = pieces.four(&self.flow, i, to, &self.now.y) else { break };
             let energy = self.system.energy_norm(&self.now.y) + growth;
-            let steps = Steps::bent(&self.flow, self.now, &forces, clock(&force, i), energy);
+            let steps = Steps::bent(&self.flow, self.now, four, energy);
             observer.steps(&steps);
             self.now = steps.knot(LANES);
             i += LANES;

@@ -77,7 +77,7 @@ impl Hybrid<'_> {
                 let (length, touched) = self.first_touch(&now, &motion, walls, leaving, longest)?;
                 let energy = steps.energy();
                 let mut step = if length == whole {
-                    Step::whole(&self.flow, [now, steps.knot(seen + 1)], energy)
+                    Step::between(&self.flow, [now, steps.knot(seen + 1)], whole, energy)
                 } else {
                     Step::part(&self.flow, now, &motion, length, energy)
                 };
@@ -192,22 +192,26 @@ impl Hybrid<'_> {
     /// The same with bounds on the fourth derivative of the relative displacement, see [`Hybrid::fourth`].
     #[inline(always)]
     fn open(&self, steps: &Steps<'_, 4>, fourth: [f64; 2], leaving: Option<Side>) -> (usize, [bool; 2]) {
-        let (from, to, whole) = (steps.from(), steps.ends(), steps.length());
-        let margin = CUBIC * whole.powi(4) * (fourth[0] * steps.energy() + fourth[1]);
+        let (from, to, lengths) = (steps.from(), steps.ends(), steps.lengths());
+        let square = lengths * lengths;
+        let margin = square * square * CUBIC * (fourth[0] * steps.energy() + fourth[1]);
         let [x1, v1, x2, v2] = to.y;
         let ends = [x2 - x1, v2 - v1];
         let starts = [shifted(from.y[2] - from.y[0], ends[0]), shifted(from.y[3] - from.y[1], ends[1])];
-        let bounds = cubic(whole, starts, ends);
+        let bounds = cubic(lengths, starts, ends);
         let wall = f64x4::splat(self.system.wall(Side::Obstacle));
         let mut gaps = [floor(bounds), wall - ceiling(bounds)];
         if let Some(side) = leaving {
             let sign = f64x4::splat(-side.sign());
             let gap = |stroke: f64x4| sign * (stroke - self.system.wall(side));
-            let opening =
-                opening_floor(cubic(whole, [f64x4::ZERO, sign * starts[1]], [gap(ends[0]), sign * ends[1]]));
+            let opening = opening_floor(cubic(
+                lengths,
+                [f64x4::ZERO, sign * starts[1]],
+                [gap(ends[0]), sign * ends[1]],
+            ));
             gaps[side as usize].as_mut_array()[0] = opening.to_array()[0];
         }
-        let open = gaps.map(|gap| gap.simd_gt(f64x4::splat(margin)).to_bitmask());
+        let open = gaps.map(|gap| gap.simd_gt(margin).to_bitmask());
         let count = (open[0] & open[1]).trailing_ones();
         (count as usize, open.map(|lanes| lanes >> count & 1 == 0))
     }

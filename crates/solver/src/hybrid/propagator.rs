@@ -4,14 +4,14 @@ use super::held::RigidWalls;
 use crate::budget::Budget;
 use crate::contact::collocation::response::Collisions;
 use crate::linear::flow::{Expansion, Flow};
-use crate::linear::pieces::in_steps;
+use crate::linear::pieces::{Pieces, longest_step};
 use crate::linear::reduced::Reduced;
 use crate::motion::form::{derivative_bounds, derivative_bounds_of};
 use crate::motion::knot::Knot;
 use crate::motion::polynomial::{BLOCKS, Polynomial};
 use crate::response::Work;
 use crate::system::LinearSystem;
-use retune_model::{Coupled, EvenForce, RegularisedContact, Side, Stretch};
+use retune_model::{Coupled, RegularisedContact, SampledForce, Side, Stretch};
 
 /// The phase of the damper's motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,8 +73,8 @@ pub struct Hybrid<'a> {
     /// The longest step of a flight without samples, s.
     longest: f64,
     pub(super) max_steps: u64,
-    /// The record, if the flow takes a step for each of its pieces.
-    pub(super) samples: Option<EvenForce>,
+    /// The record, if the flow can go over its pieces.
+    pub(super) samples: Option<Pieces<4>>,
     /// The stretch of time that the motion is in, of a force that has several.
     pub(super) stretch: Option<Stretch>,
     /// The end of what is being followed, s.
@@ -105,19 +105,20 @@ impl<'a> Hybrid<'a> {
     /// Prepares the propagator. `rtol` is the relative error allowed in a step of a contact, `longest` (s) the longest
     /// flight step, `max_steps` the most steps a run may take.
     pub fn new(system: &'a Coupled, rtol: f64, longest: f64, max_steps: u64) -> Self {
-        Self::over(system.bare().even_force(), system, rtol, longest, max_steps)
+        Self::over(system.bare().sampled_force(), system, rtol, longest, max_steps)
     }
 
     /// The same over these samples.
-    fn over(force: Option<EvenForce>, system: &'a Coupled, rtol: f64, whole: f64, max_steps: u64) -> Self {
-        let longest = force.map_or(whole, |force| whole.min(force.even[1]));
+    fn over(force: Option<SampledForce>, system: &'a Coupled, rtol: f64, whole: f64, max_steps: u64) -> Self {
+        let longest = longest_step(force, whole);
         let flow = Flow::new(system.linear(), longest);
-        let (step, bounds) = (flow.step(), derivative_bounds::<_, 4, 5>(system, STROKE));
+        let bounds = derivative_bounds::<_, 4, 5>(system, STROKE);
         Self {
             system,
             collisions: Side::BOTH.map(|side| Collisions::new(system, side, &flow, rtol)),
             budget: Budget::new(flow.pace(), max_steps, Work::default(), [0.0; 2]),
             reduced: ReducedFlight::of(system, &flow, longest).map(Box::new),
+            samples: Pieces::of(force, &flow),
             rigid: RigidWalls::of(system, longest).map(Box::new),
             flow,
             contacts: Side::BOTH.map(|side| system.regularised_contact(side)),
@@ -126,7 +127,6 @@ impl<'a> Hybrid<'a> {
             rtol,
             longest: whole,
             max_steps,
-            samples: in_steps(force, step),
             stretch: None,
             end: f64::INFINITY,
             work: Work::default(),

@@ -1,14 +1,14 @@
-//! Flight over the samples of an equidistant record, four of its pieces side by side, and contacts that span samples of any record.
+//! Flight over the samples of a record, four of its pieces side by side, and contacts that span samples.
 
 use super::propagator::{Hybrid, Motion, Phase};
 use crate::contact::collocation::bends::Bends;
 use crate::error::SolverError;
-use crate::linear::pieces::{Block, PIECES, clock, forces};
+use crate::linear::pieces::{Block, PIECES, Pieces};
 use crate::linear::steps::Steps;
 use crate::motion::knot::Knot;
 use crate::motion::lanes::LANES;
 use crate::observe::observer::Observer;
-use retune_model::{EvenForce, Side};
+use retune_model::Side;
 use wide::f64x4;
 
 /// By how much of the largest force two pieces of a record may differ where they meet, as rounding leaves it. More is a jump.
@@ -44,15 +44,28 @@ impl Hybrid<'_> {
         to: f64,
         observer: &mut impl Observer<4>,
     ) -> Result<Motion, SolverError> {
-        let Some(force) = self.samples.filter(|_| from.phase == Phase::Flight) else { return Ok(from) };
-        let Some(mut i) = force.at(from.t) else { return Ok(from) };
+        let Some(pieces) = self.samples.take_if(|_| from.phase == Phase::Flight) else { return Ok(from) };
+        let end = self.over_pieces(&pieces, from, to, observer);
+        self.samples = Some(pieces);
+        end
+    }
+
+    #[inline(always)]
+    fn over_pieces(
+        &mut self,
+        pieces: &Pieces<4>,
+        from: Motion,
+        to: f64,
+        observer: &mut impl Observer<4>,
+    ) -> Result<Motion, SolverError> {
+        let Some(mut i) = pieces.at(from.t) else { return Ok(from) };
         let mut now = Knot { t: from.t, excitation: [0.0; 2], y: from.y, clock: [1.0, 0.0] };
         let growth = LANES as f64 * self.flow.step() * self.system.energy_norm_growth();
         // After pieces that were looked at one by one, so many are, before others are tried together.
         let mut together = i;
-        while let Some(forces) = forces(&force, i, to) {
+        loop {
             if i >= together {
-                if let Some((end, y)) = self.pass(&force, i, &now.y, to, observer) {
+                if let Some((end, y)) = self.pass(pieces, i, &now.y, to, observer) {
                     (now.t, now.y, i, together) = (end, y, i + PIECES, i + PIECES);
                     self.work.steps += PIECES as u64;
                     self.budget.check(&self.work.and(observer.looks()), now.t)?;
@@ -60,11 +73,12 @@ impl Hybrid<'_> {
                 }
                 together = i + PIECES;
             }
+            let Some(four) = pieces.four(&self.flow, i, to, &now.y) else { break };
             let energy = self.system.energy_norm(&now.y);
             if !energy.is_finite() {
                 return Err(SolverError::NonFinite { t: now.t });
             }
-            let mut steps = Steps::bent(&self.flow, now, &forces, clock(&force, i), energy + growth);
+            let mut steps = Steps::bent(&self.flow, now, four, energy + growth);
             let (open, _) = self.open_steps(&steps, None);
             if open == 0 {
                 break;
@@ -86,7 +100,7 @@ impl Hybrid<'_> {
     #[inline(always)]
     fn pass(
         &self,
-        force: &EvenForce,
+        pieces: &Pieces<4>,
         i: usize,
         y: &[f64; 4],
         to: f64,
@@ -94,7 +108,7 @@ impl Hybrid<'_> {
     ) -> Option<(f64, [f64; 4])> {
         let growth = PIECES as f64 * self.flow.step() * self.system.energy_norm_growth();
         let energy = self.system.energy_norm(y) + growth;
-        let block = Block::new(&self.flow, force, i, to, y, energy)?;
+        let block = Block::new(&self.flow, pieces, i, to, y, energy)?;
         let stroke = |_: &[f64x4; 2], y: &[f64x4; 4]| y[2] - y[0];
         let [near, far] = block.range(stroke, self.second[0] * energy + self.second[1]);
         let [wall, obstacle] = Side::BOTH.map(|side| self.system.wall(side));

@@ -26,12 +26,6 @@ pub struct Stride<const N: usize> {
     pub y: [f64x4; N],
 }
 
-/// A stride whose force bends at every step: the pair that begins each of them, and that with which it ends.
-pub struct BentStride<const N: usize> {
-    pub begin: [f64x4; 2],
-    pub stride: Stride<N>,
-}
-
 /// The flow over a fixed step: `y(t + h) = origin + Φ (y(t) - origin) + Ψ [P cos ωt, P sin ωt]`.
 pub struct Flow<const N: usize> {
     linear: Linear<N>,
@@ -165,9 +159,10 @@ impl<const N: usize> Flow<N> {
         }
     }
 
-    /// The moments after the next whole steps, each of them under a straight line from one of these forces to the next.
+    /// The moments after the next whole steps, each of them under a straight line from one of these forces to the next, and the force and its
+    /// partner with which each begins.
     #[inline(always)]
-    pub fn bent_stride(&self, forces: &[f64; LANES + 1], y: &[f64; N]) -> BentStride<N> {
+    pub fn bent_stride(&self, forces: &[f64; LANES + 1], y: &[f64; N]) -> ([f64x4; 2], Stride<N>) {
         let mut next = self.linear.origin.map(f64x4::splat);
         for (column, &force) in self.bends.iter().zip(forces) {
             for i in 0..N {
@@ -178,7 +173,7 @@ impl<const N: usize> Flow<N> {
         let [a, b, c, d, e] = *forces;
         let (begin, end) = (f64x4::from([a, b, c, d]), f64x4::from([b, c, d, e]));
         let partner = (begin - end) * (1.0 / (self.linear.frequency * self.step));
-        BentStride { begin: [begin, partner], stride: Stride { excitation: [end, partner], y: next } }
+        ([begin, partner], Stride { excitation: [end, partner], y: next })
     }
 
     /// Length of a whole step, s.
@@ -218,6 +213,11 @@ impl<const N: usize> Flow<N> {
             }
         }
         Jet { states, force }
+    }
+
+    /// The series of which `Φ` and `Ψ` are the values.
+    pub(super) fn series(&self) -> (&[Expansion<N>; N], &[Expansion<N>; 2]) {
+        (&self.free, &self.forced)
     }
 
     /// The largest share by which the last term of the series over a step counts in any component of the motion.

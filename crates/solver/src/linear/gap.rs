@@ -6,7 +6,7 @@ use wide::f64x4;
 /// Bernstein coefficients of the cubic that meets `(value, slope)` at both ends of an interval of length `h`: it stays between
 /// the least and the largest of them, and leaves a function by at most [`CUBIC`]` h⁴ max|f⁗|`.
 #[inline(always)]
-pub fn cubic(h: f64, a: [f64x4; 2], b: [f64x4; 2]) -> [f64x4; 4] {
+pub fn cubic(h: f64x4, a: [f64x4; 2], b: [f64x4; 2]) -> [f64x4; 4] {
     let third = h / 3.0;
     [a[0], a[0] + a[1] * third, b[0] - b[1] * third, b[0]]
 }
@@ -89,7 +89,7 @@ impl<F: Fn(f64) -> [f64; 2]> Search<F> {
     ) -> Result<Option<f64>, Lost> {
         let h = b - a;
         let [left_lanes, right_lanes] = [left, right].map(|end| end.map(f64x4::splat));
-        if floor(cubic(h, left_lanes, right_lanes)).to_array()[0] >= CUBIC * h.powi(4) * self.fourth {
+        if floor(cubic(h.into(), left_lanes, right_lanes)).to_array()[0] >= CUBIC * h.powi(4) * self.fourth {
             return Ok(None);
         }
         // |p' - cubic'| <= √3 h³/216 max|p⁗|; the cubic's slope stays below the largest of its Bernstein coefficients.

@@ -1,28 +1,73 @@
-//! The pieces of an equidistant record as steps of the flow.
+//! The pieces of a record as steps of the flow.
 
-use super::flow::{BentStride, Flow, Stride};
-use super::steps::StepClock;
+use super::flow::{Flow, Stride};
+use super::uneven::Uneven;
 use crate::motion::lanes::LANES;
-use retune_model::EvenForce;
+use retune_model::SampledForce;
 use wide::f64x4;
 
-/// The samples of a record, if a flow may take its steps from one to the next: no step of its own is shorter.
-pub fn in_steps(force: Option<EvenForce>, step: f64) -> Option<EvenForce> {
-    force.filter(|force| force.even[1] == step)
+/// The longest step of a flow under a force with samples, if it may otherwise take steps of at most `longest` seconds.
+pub fn longest_step(force: Option<SampledForce>, longest: f64) -> f64 {
+    force.and_then(|force| force.even()).map_or(longest, |[_, step]| longest.min(step))
 }
 
-/// From sample `i` on the next four pieces that end by the time `to`, as steps from a moment.
-#[inline(always)]
-pub fn forces(force: &EvenForce, i: usize, to: f64) -> Option<[f64; LANES + 1]> {
-    force.forces(i).filter(|_| force.time(i + LANES) <= to)
+/// Four pieces of a record in a row.
+pub struct FourPieces<const N: usize> {
+    /// How long they take, and when they end, s.
+    pub lengths: f64x4,
+    pub times: f64x4,
+    /// The force with which each begins, and its partner.
+    pub begin: [f64x4; 2],
+    /// The moments at which they end.
+    pub ends: Stride<N>,
 }
 
-/// The clock of a record at sample `i`.
-pub fn clock(force: &EvenForce, i: usize) -> StepClock {
-    let [first, step] = force.even;
-    let mut clock = StepClock::new(first, step);
-    clock.count(i);
-    clock
+/// The samples of a record, from one to the next of which a flow takes its steps.
+pub struct Pieces<const N: usize> {
+    force: SampledForce,
+    spacing: Spacing<N>,
+}
+
+enum Spacing<const N: usize> {
+    /// A step of the flow; from this time on, s.
+    Step(f64),
+    /// Any time up to that.
+    Any(Box<Uneven<N>>),
+}
+
+impl<const N: usize> Pieces<N> {
+    /// Those of a force that has samples. None where equidistant ones are farther apart than a step of the flow is long.
+    pub fn of(force: Option<SampledForce>, flow: &Flow<N>) -> Option<Self> {
+        let force = force?;
+        let spacing = match force.even() {
+            Some([first, step]) => (flow.step() == step).then_some(Spacing::Step(first))?,
+            None => Spacing::Any(Box::new(Uneven::of(flow))),
+        };
+        Some(Self { force, spacing })
+    }
+
+    /// The sample at exactly this time, s.
+    pub fn at(&self, t: f64) -> Option<usize> {
+        self.force.at(t)
+    }
+
+    /// The next four from sample `i` and the state `y` there on, if they end by the time `to` (s) and none is longer than a step of the flow.
+    #[inline(always)]
+    pub fn four(&self, flow: &Flow<N>, i: usize, to: f64, y: &[f64; N]) -> Option<FourPieces<N>> {
+        match &self.spacing {
+            Spacing::Step(first) => {
+                let time = |count: usize| first + (i + count) as f64 * flow.step();
+                let forces = self.force.forces(i).filter(|_| time(LANES) <= to)?;
+                let (begin, ends) = flow.bent_stride(&forces, y);
+                let times = f64x4::from([time(1), time(2), time(3), time(4)]);
+                Some(FourPieces { lengths: flow.step().into(), times, begin, ends })
+            }
+            Spacing::Any(uneven) => {
+                let times = self.force.times(i).filter(|times| times[LANES] <= to)?;
+                uneven.four(flow, &times, &self.force.forces(i)?, y)
+            }
+        }
+    }
 }
 
 /// Strides in a [`Block`].
@@ -31,8 +76,8 @@ const STRIDES: usize = 4;
 /// Pieces in a [`Block`].
 pub const PIECES: usize = STRIDES * LANES;
 
-/// Many pieces of a record in a row, of which nothing is computed but the states at their ends: most of a flight is far from every wall and from
-/// every record, which values at the samples and a bound on second derivatives between them prove.
+/// Many pieces of an equidistant record in a row, of which nothing is computed but the states at their ends: most of a flight is far from every
+/// wall and from every record, which values at the samples and a bound on second derivatives between them prove.
 pub struct Block<const N: usize> {
     /// The first moment: time, s; the force and its partner, and the state.
     pub t: f64,
@@ -49,34 +94,29 @@ pub struct Block<const N: usize> {
 }
 
 impl<const N: usize> Block<N> {
-    /// The pieces from sample `i` on, if they end by the time `to`; `energy` bounds the energy norm in them.
+    /// The pieces from sample `i` on, if they are equidistant and end by the time `to`; `energy` bounds the energy norm in them.
     #[inline(always)]
     pub fn new(
         flow: &Flow<N>,
-        force: &EvenForce,
+        pieces: &Pieces<N>,
         i: usize,
         to: f64,
         from: &[f64; N],
         energy: f64,
     ) -> Option<Self> {
-        let end = force.time(i + PIECES);
-        let all = force.forces::<{ PIECES + 1 }>(i).filter(|_| end <= to)?;
+        let Spacing::Step(first) = pieces.spacing else { return None };
+        let time = |i: usize| first + i as f64 * flow.step();
+        let end = time(i + PIECES);
+        let all = pieces.force.forces::<{ PIECES + 1 }>(i).filter(|_| end <= to)?;
         let mut y = *from;
         let ends = std::array::from_fn(|number| {
             let forces = std::array::from_fn(|k| all[number * LANES + k]);
-            let BentStride { stride, .. } = flow.bent_stride(&forces, &y);
+            let (_, stride) = flow.bent_stride(&forces, &y);
             y = stride.y.map(|component| component.to_array()[LANES - 1]);
             stride
         });
-        Some(Self {
-            t: force.time(i),
-            force: [all[0], 0.0],
-            from: *from,
-            ends,
-            end,
-            length: flow.step(),
-            energy,
-        })
+        let (t, length) = (time(i), flow.step());
+        Some(Self { t, force: [all[0], 0.0], from: *from, ends, end, length, energy })
     }
 
     /// The state at its end.

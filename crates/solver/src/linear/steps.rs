@@ -1,6 +1,7 @@
 //! Steps of the exact flow, several of them side by side, as they are handed to observers.
 
-use super::flow::{BentStride, Expansion, Flow, Stride};
+use super::flow::{Expansion, Flow, Stride};
+use super::pieces::FourPieces;
 use crate::motion::form::{Form, QUINTIC};
 use crate::motion::knot::{Jet, Knot};
 use crate::motion::lanes::LANES;
@@ -18,15 +19,15 @@ pub struct Step<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Step<'a, N> {
-    /// The step between two moments a whole step apart; `energy` bounds the energy norm (√J) of the motion in it.
-    pub fn whole(flow: &'a Flow<N>, ends: [Knot<N>; 2], energy: f64) -> Self {
-        Self { flow, ends, length: flow.step(), energy, expansion: OnceCell::new() }
+    /// The step between two moments `length` seconds apart, at most a whole step; `energy` bounds the energy norm (√J) of the motion in it.
+    pub fn between(flow: &'a Flow<N>, ends: [Knot<N>; 2], length: f64, energy: f64) -> Self {
+        Self { flow, ends, length, energy, expansion: OnceCell::new() }
     }
 
-    /// The part of a step that takes `length` seconds from `from` on, where the motion is `motion`; `energy` as in [`Self::whole`].
+    /// The part of a step that takes `length` seconds from `from` on, where the motion is `motion`; `energy` as in [`Self::between`].
     pub fn part(flow: &'a Flow<N>, from: Knot<N>, motion: &Expansion<N>, length: f64, energy: f64) -> Self {
         let end = moment(flow, &from, motion, length);
-        Self { flow, ends: [from, end], length, energy, expansion: OnceCell::new() }
+        Self::between(flow, [from, end], length, energy)
     }
 
     /// The motion over the step.
@@ -81,11 +82,13 @@ fn moment<const N: usize>(flow: &Flow<N>, from: &Knot<N>, motion: &Expansion<N>,
     }
 }
 
-/// Up to four whole steps.
+/// Up to four steps: whole ones, or pieces of a record.
 pub struct Steps<'a, const N: usize> {
     flow: &'a Flow<N>,
-    clock: StepClock,
     from: Knot<N>,
+    /// How long they take, and when they end, s.
+    lengths: f64x4,
+    times: f64x4,
     stride: Stride<N>,
     /// The force with which each begins, where that is not the one with which the last one ends.
     begin: Option<[f64x4; 2]>,
@@ -113,6 +116,12 @@ impl StepClock {
         self.since + (self.steps + steps as f64) * self.step
     }
 
+    /// The same after 1, 2, … steps.
+    #[inline(always)]
+    fn after_each(&self) -> f64x4 {
+        (f64x4::from([1.0, 2.0, 3.0, 4.0]) + self.steps) * self.step + self.since
+    }
+
     /// Counts some steps.
     pub fn count(&mut self, steps: usize) {
         self.steps += steps as f64;
@@ -124,22 +133,17 @@ impl<'a, const N: usize> Steps<'a, N> {
     /// all of them.
     #[inline(always)]
     pub fn new(flow: &'a Flow<N>, from: Knot<N>, clock: StepClock, energy: f64) -> Self {
+        let (lengths, times) = (flow.step().into(), clock.after_each());
         let stride = flow.stride(from.excitation, &from.y);
-        Self { flow, clock, from, stride, begin: None, count: LANES, energy }
+        Self { flow, from, lengths, times, stride, begin: None, count: LANES, energy }
     }
 
-    /// The same under straight lines from one of these forces to the next, a line for each step; the first begins at `from`.
+    /// Pieces of a record as steps, the first of which begins at `from`.
     #[inline(always)]
-    pub fn bent(
-        flow: &'a Flow<N>,
-        mut from: Knot<N>,
-        forces: &[f64; LANES + 1],
-        clock: StepClock,
-        energy: f64,
-    ) -> Self {
-        let BentStride { begin, stride } = flow.bent_stride(forces, &from.y);
+    pub fn bent(flow: &'a Flow<N>, mut from: Knot<N>, pieces: FourPieces<N>, energy: f64) -> Self {
+        let FourPieces { lengths, times, begin, ends: stride } = pieces;
         from.excitation = begin.map(|lanes| lanes.to_array()[0]);
-        Self { flow, clock, from, stride, begin: Some(begin), count: LANES, energy }
+        Self { flow, from, lengths, times, stride, begin: Some(begin), count: LANES, energy }
     }
 
     /// The force with which each begins, where the force bends between them.
@@ -159,8 +163,8 @@ impl<'a, const N: usize> Steps<'a, N> {
     }
 
     /// Length of each, s.
-    pub fn length(&self) -> f64 {
-        self.flow.step()
+    pub fn lengths(&self) -> f64x4 {
+        self.lengths
     }
 
     /// A bound on the energy norm of the motion, √J.
@@ -180,7 +184,7 @@ impl<'a, const N: usize> Steps<'a, N> {
 
     /// Time at the end of `steps` of them, s.
     pub fn time(&self, steps: usize) -> f64 {
-        self.clock.after(steps)
+        steps.checked_sub(1).map_or(self.from.t, |lane| self.times.to_array()[lane])
     }
 
     /// The moment after `steps` of them.
@@ -203,6 +207,7 @@ impl<'a, const N: usize> Steps<'a, N> {
         if let Some(begin) = self.begin {
             first.excitation = begin.map(|lanes| lanes.to_array()[number]);
         }
-        Step::whole(self.flow, [first, self.knot(number + 1)], self.energy)
+        let length = self.lengths.to_array()[number];
+        Step::between(self.flow, [first, self.knot(number + 1)], length, self.energy)
     }
 }

@@ -8,7 +8,7 @@ use wide::f64x4;
 
 /// Bernstein coefficients of the quintic that meets value, slope and curvature at both ends of a stretch of length `h`.
 #[inline(always)]
-pub fn quintic(h: f64, a: [f64x4; 3], b: [f64x4; 3]) -> [f64x4; 6] {
+pub fn quintic(h: f64x4, a: [f64x4; 3], b: [f64x4; 3]) -> [f64x4; 6] {
     let (fifth, twentieth) = (h / 5.0, h * h / 20.0);
     let (inner_a, inner_b) = (a[0] + a[1] * fifth, b[0] - b[1] * fifth);
     let deep_a = inner_a + a[1] * fifth + a[2] * twentieth;
@@ -86,7 +86,7 @@ mod tests {
     }
 
     fn through(h: f64, a: [f64; 3], b: [f64; 3]) -> [f64; 6] {
-        quintic(h, a.map(f64x4::splat), b.map(f64x4::splat)).map(|lanes| lanes.to_array()[0])
+        quintic(h.into(), a.map(f64x4::splat), b.map(f64x4::splat)).map(|lanes| lanes.to_array()[0])
     }
 
     #[test]

@@ -175,10 +175,11 @@ where
                 self.search.quantity.rates_in_flight(force, &y)
             }
         };
-        let h = steps.length();
+        let h = steps.lengths();
         let sixth = self.search.quantity.form().sixth_in_flight(steps.energy());
-        let remainder = QUINTIC * h.powi(6) * sixth;
-        let highest = highest(quintic(h, begins, ends), f64x4::splat(remainder));
+        let square = h * h;
+        let remainder = square * (square * square) * QUINTIC * sixth;
+        let highest = highest(quintic(h, begins, ends), remainder);
         let last = steps.count() - 1;
         let end = (steps.time(last + 1), true, ends.map(|lanes| lanes.to_array()[last]));
         self.last = steps.begin().is_none().then_some(end);
@@ -196,8 +197,8 @@ where
             let step = steps.step(number);
             let [begin, end] = step.ends();
             let rates = |all: [f64x4; 3]| all.map(|lanes| lanes.to_array()[number]);
-            let (from, to) = ((0.0, *begin, rates(begins)), (h, *end, rates(ends)));
-            self.search.begin(&step, &from, &to, remainder);
+            let (from, to) = ((0.0, *begin, rates(begins)), (step.length(), *end, rates(ends)));
+            self.search.begin(&step, &from, &to, remainder.to_array()[number]);
         }
     }
 

@@ -119,7 +119,7 @@ impl<Q> Search<Q> {
     ) where
         Q: Quantity<N>,
     {
-        let coefficients = quintic(b.0 - a.0, a.2.map(f64x4::splat), b.2.map(f64x4::splat));
+        let coefficients = quintic(f64x4::splat(b.0 - a.0), a.2.map(f64x4::splat), b.2.map(f64x4::splat));
         let mut highest = if remainder.is_finite() {
             highest(coefficients, f64x4::splat(remainder)).to_array()[0]
         } else {

@@ -164,8 +164,8 @@ fn exact_a_sample_on_a_line_changes_nothing() {
     assert!(touched > 40, "{touched}");
 }
 
-/// Pieces of an equidistant record are passed many at a time. With one more sample on the first line it is not equidistant, and every piece is
-/// looked at by itself.
+/// Pieces of an equidistant record are passed many at a time, over steps of one length. With one more sample on the first line it is not
+/// equidistant: each piece takes its own time, and four at most go together.
 #[test]
 fn exact_pieces_passed_together_hide_no_largest_value() {
     let mut spread = Spread::new(12);
