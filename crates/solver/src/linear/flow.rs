@@ -26,6 +26,17 @@ pub struct Stride<const N: usize> {
     pub y: [f64x4; N],
 }
 
+/// Four pieces of a record in a row.
+pub struct FourPieces<const N: usize> {
+    /// How long they take, and when they end, s.
+    pub lengths: f64x4,
+    pub times: f64x4,
+    /// The force with which each begins, and its partner.
+    pub begin: [f64x4; 2],
+    /// The moments at which they end.
+    pub ends: Stride<N>,
+}
+
 /// The flow over a fixed step: `y(t + h) = origin + Φ (y(t) - origin) + Ψ [P cos ωt, P sin ωt]`.
 pub struct Flow<const N: usize> {
     linear: Linear<N>,

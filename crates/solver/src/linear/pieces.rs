@@ -1,6 +1,6 @@
 //! The pieces of a record as steps of the flow.
 
-use super::flow::{Flow, Stride};
+use super::flow::{Flow, FourPieces, Stride};
 use super::uneven::Uneven;
 use crate::motion::lanes::LANES;
 use retune_model::SampledForce;
@@ -9,17 +9,6 @@ use wide::f64x4;
 /// The longest step of a flow under a force with samples, if it may otherwise take steps of at most `longest` seconds.
 pub fn longest_step(force: Option<SampledForce>, longest: f64) -> f64 {
     force.and_then(|force| force.even()).map_or(longest, |[_, step]| longest.min(step))
-}
-
-/// Four pieces of a record in a row.
-pub struct FourPieces<const N: usize> {
-    /// How long they take, and when they end, s.
-    pub lengths: f64x4,
-    pub times: f64x4,
-    /// The force with which each begins, and its partner.
-    pub begin: [f64x4; 2],
-    /// The moments at which they end.
-    pub ends: Stride<N>,
 }
 
 /// The samples of a record, from one to the next of which a flow takes its steps.

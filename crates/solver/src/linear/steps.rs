@@ -1,7 +1,6 @@
 //! Steps of the exact flow, several of them side by side, as they are handed to observers.
 
-use super::flow::{Expansion, Flow, Stride};
-use super::pieces::FourPieces;
+use super::flow::{Expansion, Flow, FourPieces, Stride};
 use crate::motion::form::{Form, QUINTIC};
 use crate::motion::knot::{Jet, Knot};
 use crate::motion::lanes::LANES;

@@ -1,7 +1,6 @@
 //! The flow over pieces of a record whose samples are not equidistant: each of them takes its own time.
 
-use super::flow::{Expansion, Flow, Stride};
-use super::pieces::FourPieces;
+use super::flow::{Expansion, Flow, FourPieces, Stride};
 use crate::motion::lanes::LANES;
 use crate::motion::polynomial::BLOCKS;
 use wide::f64x4;
