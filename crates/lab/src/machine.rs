@@ -31,11 +31,15 @@ pub fn this() -> Value {
     })
 }
 
-/// Of a directory of results, in words.
-pub fn words(folder: &Path) -> Any<String> {
-    let machine: Value = serde_json::from_str(&fs::read_to_string(folder.join(NAME))?)?;
+/// That of a directory of results, in words.
+pub fn words_of(folder: &Path) -> Any<String> {
+    Ok(words(&serde_json::from_str(&fs::read_to_string(folder.join(NAME))?)?))
+}
+
+/// A machine in words.
+pub fn words(machine: &Value) -> String {
     let text = |name: &str| machine[name].as_str().unwrap_or("not known").to_owned();
-    Ok(format!(
+    format!(
         "{}, {} cores, load {} at the start; {}; {}; commit {}",
         text("processor"),
         machine["cores"],
@@ -43,5 +47,5 @@ pub fn words(folder: &Path) -> Any<String> {
         text("rustc"),
         text("cc"),
         text("commit")
-    ))
+    )
 }

@@ -67,7 +67,8 @@ fn rows(folder: &Path, cases: &[Case]) -> Any<Vec<Row>> {
 fn draw(folder: &Path, cases: &[Case], references: &[Reference]) -> Any<()> {
     let (rows, savings) =
         (rows(folder, cases)?, savings::parse(&fs::read_to_string(folder.join("models.csv"))?));
-    let text = text::text(&machine::words(folder)?, cases, references, &rows, &savings, &statistics::all()?);
+    let text =
+        text::text(&machine::words_of(folder)?, cases, references, &rows, &savings, &statistics::all()?);
     fs::write(folder.join("README.md"), text)?;
     let scenes: Vec<(&Case, &Reference)> = cases.iter().zip(references).collect();
     for (name, measure, cost) in [

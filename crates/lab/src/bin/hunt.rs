@@ -2,8 +2,8 @@
 //! the standard error, what must not be; then it ends with 1.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
-use retune_lab::Any;
 use retune_lab::hunts::{durations, robust, scenes, walk};
+use retune_lab::{Any, machine};
 use retune_testkit::hunt as hunts;
 use retune_testkit::hunt::largest::Scenes;
 use retune_testkit::hunt::{
@@ -74,7 +74,11 @@ fn main() -> Any<ExitCode> {
             show(PERIODS, branches::periods(&stiffnesses));
             show(FROM_REST, branches::from_rest(many(3001)?));
         }
-        "durations" => show(include_str!("../hunts/durations.md"), durations::durations(many(3000)?)),
+        "durations" => {
+            let heading = include_str!("../hunts/durations.md");
+            let machine = machine::words(&machine::this());
+            show(&heading.replace("MACHINE", &machine), durations::durations(many(3000)?));
+        }
         "dampers" => show(include_str!("../hunts/dampers.md"), dampers::dampers(many(7)?, 500)),
         "walk" => show(WALK, walk::walk(draws.map_or(Ok(1.0), str::parse)?)?),
         "scenes" => show("", hunts::scenes::scenes(&scenes::drawn(many(30_000)?))),

@@ -3,6 +3,7 @@
 use super::held::RigidWalls;
 use crate::budget::Budget;
 use crate::contact::collocation::response::Collisions;
+use crate::contact::regularised::shared::Shared;
 use crate::linear::flow::{Expansion, Flow};
 use crate::linear::pieces::{Pieces, longest_step};
 use crate::linear::reduced::Reduced;
@@ -80,6 +81,8 @@ pub struct Hybrid<'a> {
     /// The end of what is being followed, s.
     pub(super) end: f64,
     pub(super) budget: Budget,
+    /// Of the piece of a contact that is observed.
+    pub(super) shared: Shared,
     /// Work done so far.
     pub work: Work,
 }
@@ -129,6 +132,7 @@ impl<'a> Hybrid<'a> {
             max_steps,
             stretch: None,
             end: f64::INFINITY,
+            shared: Shared::default(),
             work: Work::default(),
         }
     }

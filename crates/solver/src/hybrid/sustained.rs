@@ -21,7 +21,7 @@ impl Hybrid<'_> {
     ) -> Result<End, SolverError> {
         let follows = self.reduced.is_some() && !observer.follows_contacts();
         let limits = (self.system, self.rtol, self.budget, follows);
-        integrate(equations, from, regularised, to, limits, &mut self.work, observer)
+        integrate(equations, from, regularised, to, limits, (&mut self.work, &self.shared), observer)
     }
 
     /// Starts a contact at a touch-down. A contact that begins (almost) at rest has no time scale of its own at `q = 0`: the flight

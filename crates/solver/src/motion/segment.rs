@@ -22,6 +22,10 @@ pub trait Segment<const N: usize> {
     fn jet(&self, _at: &Knot<N>) -> Option<Jet<N>> {
         None
     }
+    /// How many times as long as usual a look at it takes.
+    fn cost(&self) -> u64 {
+        1
+    }
     /// A bound on the energy norm of the motion in it (√J), where one is known.
     fn energy(&self) -> f64 {
         f64::INFINITY

@@ -98,7 +98,7 @@ pub trait Observer<const N: usize> {
     fn satisfied(&self) -> bool {
         false
     }
-    /// How much it has looked at, in units of some 10 to 30 ns of a processor of today.
+    /// How much it has looked at, in units of some 10 ns of a processor of today.
     fn looks(&self) -> u64 {
         0
     }

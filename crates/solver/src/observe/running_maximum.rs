@@ -160,6 +160,7 @@ where
             self.last = None;
             return;
         }
+        self.search.looks += steps.count() as u64;
         let ends = self.search.quantity.rates_in_flight(&to.excitation, &to.y);
         let begins = match steps.begin() {
             None => {

@@ -105,7 +105,7 @@ impl<Q> Search<Q> {
         Q: Quantity<N>,
     {
         (self.halvings, self.sharp) = (HALVINGS, false);
-        self.looks += SEGMENT;
+        self.looks += SEGMENT * segment.cost();
         self.search(segment, a, b, remainder);
     }
 
@@ -169,7 +169,7 @@ impl<Q> Search<Q> {
             // As often as that of this stretch says little.
             if !self.sharp || says_little(remainder, highest, a, b) {
                 self.sharp = true;
-                self.looks += BOUND;
+                self.looks += BOUND * segment.cost();
                 let sharper = self.quintic_error(segment, a, b, true);
                 if sharper < remainder {
                     return self.search(segment, a, b, sharper);
@@ -189,7 +189,7 @@ impl<Q> Search<Q> {
     where
         Q: Quantity<N>,
     {
-        self.looks += MOMENT;
+        self.looks += MOMENT * segment.cost();
         let knot = segment.at(theta);
         (theta, knot, in_theta(rates_in(segment, &knot, &self.quantity), knot.clock))
     }

@@ -108,6 +108,9 @@ impl<S: Segment<4>> Segment<4> for Tail<'_, S> {
     fn jet(&self, at: &Knot<4>) -> Option<Jet<4>> {
         self.whole.jet(at)
     }
+    fn cost(&self) -> u64 {
+        self.whole.cost()
+    }
     fn quintic_error(&self, form: &Form<4>, ends: [&Knot<4>; 2], h: f64, sharp: bool) -> Option<f64> {
         self.whole.quintic_error(form, ends, h, sharp)
     }

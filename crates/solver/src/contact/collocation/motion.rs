@@ -197,6 +197,7 @@ impl<const N: usize, const M: usize> Collision<'_, N, M> {
             ends,
             energy: f64::INFINITY,
             bounds: Default::default(),
+            shared: None,
         }
     }
 }

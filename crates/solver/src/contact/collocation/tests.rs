@@ -7,6 +7,7 @@ use super::bends::Bends;
 use super::response::Collisions;
 use crate::budget::{Budget, Pace};
 use crate::contact::regularised::integrate::{End, integrate};
+use crate::contact::regularised::shared::Shared;
 use crate::linear::flow::Flow;
 use crate::motion::knot::Knot;
 use crate::motion::segment::Segment;
@@ -59,7 +60,15 @@ fn step_by_step(system: &Coupled, side: Side, touch: &Knot<4>) -> Knot<4> {
     loop {
         // It begins anew where the force bends.
         let to = system.bare().stretch(from.t).map_or(1e9, |stretch| stretch.to.min(1e9));
-        match integrate(equations.clone(), &from, regularised, to, limits, &mut work, &mut Unobserved) {
+        match integrate(
+            equations.clone(),
+            &from,
+            regularised,
+            to,
+            limits,
+            (&mut work, &Shared::default()),
+            &mut Unobserved,
+        ) {
             Ok(End::LiftOff(end)) => return end,
             Ok(End::InContact(end)) => {
                 regularised = equations.regularise(&end.y);
@@ -202,7 +211,7 @@ impl Observer<4> for Compare<'_> {
                 regularised,
                 seen.t + 1e-9,
                 limits,
-                &mut work,
+                (&mut work, &Shared::default()),
                 &mut find,
             );
             let y = find.y.expect("the time is within the contact");

@@ -2,6 +2,7 @@
 
 use super::piece::{Piece, Q, TIME, W, at_elapsed, knot, step};
 use super::plan::Plan;
+use super::shared::Shared;
 use crate::budget::Budget;
 use crate::error::SolverError;
 use crate::methods::dop853::{self, EVALUATIONS};
@@ -33,7 +34,7 @@ pub fn integrate(
     y: RegularisedState,
     to: f64,
     (system, rtol, budget, follows): (&Coupled, f64, Budget, bool),
-    work: &mut Work,
+    (work, shared): (&mut Work, &Shared),
     observer: &mut impl Observer<4>,
 ) -> Result<End, SolverError> {
     equations.set_excitation(y[TIME], from.excitation);
@@ -61,7 +62,9 @@ pub fn integrate(
             energy: (2.0 * system.total_energy(&contact.start.y)).sqrt()
                 + (end.t - contact.start.t) * system.energy_norm_growth(),
             bounds: Default::default(),
+            shared: Some(shared),
         };
+        shared.clear();
         if length > 0.0 {
             observer.segment(&piece);
         }

@@ -5,8 +5,9 @@
 //! simple root of `q`: a step aimed at it and a last short one with `q` as the independent variable (M. Hénon, Physica D 5,
 //! 1982) reach it without iteration.
 //!
-//! Read `piece` (a stretch of a contact), `plan` (lengths of steps), then `integrate` (the loop).
+//! Read `piece` (a stretch of a contact), `shared` (what its observers share), `plan` (lengths of steps), then `integrate` (the loop).
 
 pub mod integrate;
 pub mod piece;
 pub mod plan;
+pub mod shared;

@@ -1,5 +1,6 @@
 //! A piece of a contact in regularised time, as observers see it.
 
+use super::shared::{Shared, between};
 use crate::methods::dop853::{self, Step};
 use crate::motion::form::{Form, QUINTIC};
 use crate::motion::knot::{Jet, Knot};
@@ -30,6 +31,8 @@ pub struct Piece<'a> {
     pub energy: f64,
     /// Bounds over all of it, for observers of the state and of its rate.
     pub bounds: [OnceCell<[Growth<ORDERS>; 2]>; 2],
+    /// What its observers share of its parts, if many are looked at.
+    pub shared: Option<&'a Shared>,
 }
 
 /// The moment of a regularised state.
@@ -68,7 +71,11 @@ impl Segment<4> for Piece<'_> {
         self.length
     }
     fn at(&self, theta: f64) -> Knot<4> {
-        knot(self.equations, self.touch_down, &self.advance(theta))
+        let reach = || knot(self.equations, self.touch_down, &self.advance(theta));
+        match self.shared {
+            Some(shared) => shared.moments.of(theta, reach),
+            None => reach(),
+        }
     }
     fn at_time(&self, t: f64) -> Knot<4> {
         let (_, y) = at_elapsed(|theta| self.advance(theta), self.length, t - self.touch_down);
@@ -83,20 +90,34 @@ impl Segment<4> for Piece<'_> {
             Jet { states, force }
         })
     }
+    /// Measured by `just lab hunt-durations`: the law of a restitution enters forces and bounds, without polynomials by an iteration.
+    fn cost(&self) -> u64 {
+        self.equations.restoring().map_or(1, |law| if law.is_tabulated() { 3 } else { 4 })
+    }
     fn quintic_error(&self, form: &Form<4>, ends: [&Knot<4>; 2], h: f64, _sharp: bool) -> Option<f64> {
+        let bound = || self.growth(form, ends, h);
         let own;
         let [growth, rates] = if h == self.length {
-            self.bounds[usize::from(form.is_rated())].get_or_init(|| self.growth(form, ends, h))
+            self.bounds[usize::from(form.is_rated())].get_or_init(bound)
         } else {
-            own = self.growth(form, ends, h);
+            own = match self.shared {
+                Some(shared) => shared.growths[usize::from(form.is_rated())].of(between(ends, h), bound),
+                None => bound(),
+            };
             &own
         };
         Some(QUINTIC * 720.0 * h.powi(6) * form.in_contact::<ORDERS>(growth, rates, 6)) // 6! of a Taylor coefficient
     }
 
     fn rise(&self, form: &Form<4>, ends: [&Knot<4>; 2], slopes: [f64; 2], h: f64) -> f64 {
-        let [from, to] = ends.map(|knot| self.state(knot));
-        let change = self.equations.change(h, &from, &to);
+        let bound = || {
+            let [from, to] = ends.map(|knot| self.state(knot));
+            self.equations.change(h, &from, &to)
+        };
+        let change = match self.shared {
+            Some(shared) => shared.changes.of(between(ends, h), bound),
+            None => bound(),
+        };
         change.map_or(f64::INFINITY, |change| form.rise_between(&change, slopes, h))
     }
 }
