@@ -45,6 +45,7 @@ pub fn all() -> Any<Vec<Difficulty>> {
                 ("D = 0: on the wall at t = 0", 10.0, Numbers { d: 0.0, ..SSVI }),
                 ("D = 0, stiff spring: held to the wall", 10.0, heavy),
                 ("a contact lasts to T", 0.3, heavy),
+                ("chatters, stays, leaves: once a period", 10.0, CHATTER),
                 ("C = 0: on the other wall", 5.0, Numbers { c: 0.0, ..SSVI }),
                 ("D = C = 1 µm: two walls in a step", 2.0, Numbers { d: 1e-6, c: 1e-6, ..SSVI }),
                 ("D = C = 0: clamped", 2.0, Numbers { d: 0.0, c: 0.0, ..SSVI }),
@@ -85,6 +86,9 @@ pub fn all() -> Any<Vec<Difficulty>> {
 }
 
 const BARE: &str = "resonance without damping, bare";
+
+/// A spring presses the damper on its wall, 2 mm from where it rests, for half of a period: it chatters there until it stays, and leaves.
+const CHATTER: Numbers = Numbers { k2: 5e3, c2: 100.0, d: 0.002, c: 5.0, e: 0.5, ..SSVI };
 
 /// A heavy damper on a stiff structure: in one flight step of the hybrid, concave at both ends, E1 has two maxima with a minimum
 /// between; treating it as a step with one maximum lost 0.2 % of E1max. Found by adversarial search.
