@@ -4,3 +4,4 @@ pub mod durations;
 pub mod robust;
 pub mod scenes;
 pub mod walk;
+pub mod worst;

@@ -2,7 +2,7 @@
 //! the standard error, what must not be; then it ends with 1.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
-use retune_lab::hunts::{durations, robust, scenes, walk};
+use retune_lab::hunts::{durations, robust, scenes, walk, worst};
 use retune_lab::{Any, machine};
 use retune_testkit::hunt as hunts;
 use retune_testkit::hunt::largest::Scenes;
@@ -13,7 +13,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 const USAGE: &str = "hunt NAME [DRAWS]: largest, losses, held, histories, rigid, repeats, peaks, needs, robust (DRAWS or FIRST..LAST), branches, dampers, dashpots, durations, walk (a share of its \
-                     steps), scenes, settled, bands, kills";
+                     steps), worst, scenes, settled, bands, kills";
 
 fn main() -> Any<ExitCode> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -74,11 +74,8 @@ fn main() -> Any<ExitCode> {
             show(PERIODS, branches::periods(&stiffnesses));
             show(FROM_REST, branches::from_rest(many(3001)?));
         }
-        "durations" => {
-            let heading = include_str!("../hunts/durations.md");
-            let machine = machine::words(&machine::this());
-            show(&heading.replace("MACHINE", &machine), durations::durations(many(3000)?));
-        }
+        "durations" => show(&timed(include_str!("../hunts/durations.md")), durations::durations(many(3000)?)),
+        "worst" => show(&timed(include_str!("../hunts/worst.md")), worst::worst(number(400)?)),
         "dampers" => show(include_str!("../hunts/dampers.md"), dampers::dampers(many(7)?, 500)),
         "walk" => show(WALK, walk::walk(draws.map_or(Ok(1.0), str::parse)?)?),
         "scenes" => show("", hunts::scenes::scenes(&scenes::drawn(many(30_000)?))),
@@ -88,6 +85,11 @@ fn main() -> Any<ExitCode> {
         _ => return Err(USAGE.into()),
     }
     Ok(if well { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// A heading with the machine behind its times.
+fn timed(heading: &str) -> String {
+    heading.replace("MACHINE", &machine::words(&machine::this()))
 }
 
 const HISTORIES: &str = "# The hunt under pulses and records
