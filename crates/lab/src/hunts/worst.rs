@@ -1,7 +1,7 @@
 //! A search for scenes where the hybrid is worst beside general methods.
 
 use crate::decades;
-use crate::runs::{way, ways};
+use crate::runs::{self, way, ways};
 use crate::scenes::{Numbers, SSVI};
 use cpu_time::ThreadTime;
 use rayon::prelude::*;
@@ -40,56 +40,46 @@ fn numbers(u: &[f64], lossy: bool) -> Numbers {
     Numbers { m2: x[0], k2: x[1], c2: x[2], d: x[3], c: x[4], q: x[5], omega: x[6], e, p: x[8], ..SSVI }
 }
 
-/// A method with the loosest tolerance at which it comes to the level, and the least processor time of some runs, s.
-struct Fit {
-    settings: Settings,
-    seconds: f64,
+/// Steps of the hybrid are those of flight, too.
+fn of(method: Method, contacts: Contacts, tolerance: f64) -> Settings {
+    let most = if method == Method::Hybrid { runs::MOST_STEPS } else { MOST_STEPS };
+    settings(method, contacts, tolerance, most)
 }
 
-/// None where no tolerance serves. One that does by luck, while the next tighter one does not, serves not.
-fn fit(scene: &Scene, reference: f64, method: Method, contacts: Contacts, times: u32) -> Option<Fit> {
+/// The loosest tolerance at which a method comes to the level, and the least processor time of some runs, s. A tolerance that does so by luck, while the
+/// next tighter one does not, does not count.
+fn fit(scene: &Scene, reference: f64, (method, contacts): (Method, Contacts), times: u32) -> Option<Fit> {
     let tolerances = if method.has_fixed_step() { vec![3e-3, 1e-3, 3e-4] } else { decades(3, 9) };
-    let run = |settings: &Settings| e1_max(scene, WINDOW, settings, f64::INFINITY);
-    let serves = |tolerance: &f64| {
-        let found = run(&settings(method, contacts, *tolerance, MOST_STEPS));
-        found.is_ok_and(|found| (found.value / reference - 1.0).abs() <= LEVEL)
-    };
-    let mut last = tolerances.iter().map(|tolerance| (*tolerance, serves(tolerance)));
-    let mut loose = last.next()?;
-    let tolerance = last.find_map(|tight| {
-        let found = (loose.1 && tight.1).then_some(loose.0);
-        loose = tight;
-        found
+    let run = |tolerance| e1_max(scene, WINDOW, &of(method, contacts, tolerance), f64::INFINITY);
+    let serves = |tolerance| run(tolerance).is_ok_and(|found| (found.value / reference - 1.0).abs() <= LEVEL);
+    let mut served = None;
+    let tolerance = tolerances.into_iter().find_map(|tolerance| {
+        let looser = std::mem::replace(&mut served, serves(tolerance).then_some(tolerance));
+        served.and(looser)
     })?;
-    let settings = settings(method, contacts, tolerance, MOST_STEPS);
     let timed = |_| {
         let begun = ThreadTime::now();
-        std::hint::black_box(run(&settings)).ok();
+        std::hint::black_box(run(tolerance)).ok();
         begun.elapsed().as_secs_f64()
     };
-    Some(Fit { settings, seconds: (0..times).map(timed).fold(f64::INFINITY, f64::min) })
+    Some((of(method, contacts, tolerance), (0..times).map(timed).fold(f64::INFINITY, f64::min)))
 }
+type Fit = (Settings, f64);
 
 /// The hybrid and the best of the general methods; none where no wall is touched, or where DOP853 does not confirm the hybrid at a tight tolerance: there
 /// the motion cannot be predicted.
 fn both(scene: &Scene, times: u32) -> Option<[Fit; 2]> {
-    let tight = |method| settings(method, Contacts::Located, 1e-12, MOST_STEPS);
+    let tight = |method| of(method, Contacts::Located, 1e-12);
     let value = |method| e1_max(scene, WINDOW, &tight(method), f64::INFINITY).ok().map(|found| found.value);
-    if touch_downs(scene, WINDOW, &tight(Method::Hybrid)).ok()?.is_empty() {
+    let touches = touch_downs(scene, WINDOW, &tight(Method::Hybrid)).ok()?;
+    let reference = value(Method::Hybrid)?;
+    if touches.is_empty() || (value(Method::Dop853)? / reference - 1.0).abs() > 0.01 * LEVEL {
         return None;
     }
-    let reference = value(Method::Hybrid)?;
-    let confirmed = (value(Method::Dop853)? / reference - 1.0).abs() < 0.01 * LEVEL;
-    let general = GENERAL.into_iter().filter(|_| confirmed);
-    let fits = general.flat_map(|method| ways(method).iter().map(move |(contacts, _)| (method, *contacts)));
-    let fits = fits.filter_map(|(method, contacts)| fit(scene, reference, method, contacts, times));
-    let best = fits.min_by(|a, b| a.seconds.total_cmp(&b.seconds))?;
-    Some([fit(scene, reference, Method::Hybrid, Contacts::Located, times)?, best])
-}
-
-/// How many times as long as the best of the others the hybrid takes.
-fn ratio([hybrid, best]: &[Fit; 2]) -> f64 {
-    hybrid.seconds / best.seconds
+    let each =
+        |method| ways(method).iter().filter_map(move |way| fit(scene, reference, (method, way.0), times));
+    let best = GENERAL.into_iter().flat_map(each).min_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some([each(Method::Hybrid).next()?, best])
 }
 
 /// Random draws without loss and with it, from the worst of which a simplex climbs.
@@ -102,8 +92,9 @@ pub fn worst(draws: u32) -> Hunt {
 }
 
 fn climb(draws: u32, lossy: bool, hunt: &mut Hunt) {
-    let rated =
-        |u: &[f64]| both(&numbers(u, lossy).scene(), 3).map_or(f64::INFINITY, |both| -ratio(&both).ln());
+    let rated = |u: &[f64]| {
+        both(&numbers(u, lossy).scene(), 3).map_or(f64::INFINITY, |both| (both[1].1 / both[0].1).ln())
+    };
     let draw = |number| -> Vec<f64> { (0..9).map(|i| sobol_burley::sample(number, i, 1).into()).collect() };
     let mut drawn: Vec<_> = (0..draws).into_par_iter().map(|number| (rated(&draw(number)), number)).collect();
     drawn.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -124,13 +115,13 @@ fn climb(draws: u32, lossy: bool, hunt: &mut Hunt) {
     for u in &climbed {
         let numbers = numbers(u, lossy);
         let Some(both) = both(&numbers.scene(), 20) else { continue };
-        let [of_hybrid, of_best] = both.each_ref().map(|Fit { settings, seconds }| {
+        let [of_hybrid, of_best] = both.each_ref().map(|(settings, seconds)| {
             let setting = settings.step.unwrap_or(settings.rtol);
             format!("{} {} {setting:e} | {:.2}", settings.method.name(), way(settings), 1e3 * seconds)
         });
         let Numbers { m2, k2, c2, d, c, q, omega, e, p, .. } = numbers;
         let damper = format!("{m2} | {k2} | {c2} | {d} | {c} | {q} | {omega} | {e} | {p}");
-        hunt.row(format!("| {damper} | {of_hybrid} | {of_best} | {:.2} |", ratio(&both)));
+        hunt.row(format!("| {damper} | {of_hybrid} | {of_best} | {:.2} |", both[0].1 / both[1].1));
     }
 }
 
