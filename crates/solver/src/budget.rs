@@ -13,7 +13,7 @@ const FEW: u64 = 1000;
 const HOPELESS: f64 = 100.0;
 
 /// Steps of flight that take as long as an evaluation of the equations, or a look of an observer, with its share of what is done at each step: with
-/// the default limit of 20 million steps no run takes more than two seconds (`just lab hunt-durations`).
+/// the default limit of 20 million steps hardly any run takes more than two seconds (`just lab hunt-durations`).
 const STEPS_OF_AN_EVALUATION: u64 = 4;
 
 /// Looks of an observer ([`Observer::looks`](crate::observe::Observer::looks)) that count as an evaluation: with the default limit they take
