@@ -5,3 +5,4 @@ mod hostile;
 mod server;
 mod session;
 mod thin;
+mod written;

@@ -14,10 +14,11 @@ pub fn longest_step(force: Option<SampledForce>, longest: f64) -> f64 {
 /// The samples of a record, from one to the next of which a flow takes its steps.
 pub struct Pieces<const N: usize> {
     force: SampledForce,
-    spacing: Spacing<N>,
+    lengths: Lengths<N>,
 }
 
-enum Spacing<const N: usize> {
+/// How long its pieces are.
+enum Lengths<const N: usize> {
     /// A step of the flow; from this time on, s.
     Step(f64),
     /// Any time up to that.
@@ -28,11 +29,11 @@ impl<const N: usize> Pieces<N> {
     /// Those of a force that has samples. None where equidistant ones are farther apart than a step of the flow is long.
     pub fn of(force: Option<SampledForce>, flow: &Flow<N>) -> Option<Self> {
         let force = force?;
-        let spacing = match force.even() {
-            Some([first, step]) => (flow.step() == step).then_some(Spacing::Step(first))?,
-            None => Spacing::Any(Box::new(Uneven::of(flow))),
+        let lengths = match force.even() {
+            Some([first, step]) => (flow.step() == step).then_some(Lengths::Step(first))?,
+            None => Lengths::Any(Box::new(Uneven::of(flow))),
         };
-        Some(Self { force, spacing })
+        Some(Self { force, lengths })
     }
 
     /// The sample at exactly this time, s.
@@ -43,15 +44,15 @@ impl<const N: usize> Pieces<N> {
     /// The next four from sample `i` and the state `y` there on, if they end by the time `to` (s) and none is longer than a step of the flow.
     #[inline(always)]
     pub fn four(&self, flow: &Flow<N>, i: usize, to: f64, y: &[f64; N]) -> Option<FourPieces<N>> {
-        match &self.spacing {
-            Spacing::Step(first) => {
+        match &self.lengths {
+            Lengths::Step(first) => {
                 let time = |count: usize| first + (i + count) as f64 * flow.step();
                 let forces = self.force.forces(i).filter(|_| time(LANES) <= to)?;
                 let (begin, ends) = flow.bent_stride(&forces, y);
                 let times = f64x4::from([time(1), time(2), time(3), time(4)]);
                 Some(FourPieces { lengths: flow.step().into(), times, begin, ends })
             }
-            Spacing::Any(uneven) => {
+            Lengths::Any(uneven) => {
                 let times = self.force.times(i).filter(|times| times[LANES] <= to)?;
                 uneven.four(flow, &times, &self.force.forces(i)?, y)
             }
@@ -93,7 +94,7 @@ impl<const N: usize> Block<N> {
         from: &[f64; N],
         energy: f64,
     ) -> Option<Self> {
-        let Spacing::Step(first) = pieces.spacing else { return None };
+        let Lengths::Step(first) = pieces.lengths else { return None };
         let time = |i: usize| first + i as f64 * flow.step();
         let end = time(i + PIECES);
         let all = pieces.force.forces::<{ PIECES + 1 }>(i).filter(|_| end <= to)?;

@@ -1,6 +1,6 @@
 //! A piece of a contact in regularised time, as observers see it.
 
-use super::shared::{Shared, between};
+use super::shared::{Shared, between, once};
 use crate::methods::dop853::{self, Step};
 use crate::motion::form::{Form, QUINTIC};
 use crate::motion::knot::{Jet, Knot};
@@ -72,10 +72,7 @@ impl Segment<4> for Piece<'_> {
     }
     fn at(&self, theta: f64) -> Knot<4> {
         let reach = || knot(self.equations, self.touch_down, &self.advance(theta));
-        match self.shared {
-            Some(shared) => shared.moments.of(theta, reach),
-            None => reach(),
-        }
+        once(self.shared.map(|shared| &shared.moments), theta, reach)
     }
     fn at_time(&self, t: f64) -> Knot<4> {
         let (_, y) = at_elapsed(|theta| self.advance(theta), self.length, t - self.touch_down);
@@ -100,10 +97,8 @@ impl Segment<4> for Piece<'_> {
         let [growth, rates] = if h == self.length {
             self.bounds[usize::from(form.is_rated())].get_or_init(bound)
         } else {
-            own = match self.shared {
-                Some(shared) => shared.growths[usize::from(form.is_rated())].of(between(ends, h), bound),
-                None => bound(),
-            };
+            let kept = self.shared.map(|shared| &shared.growths[usize::from(form.is_rated())]);
+            own = once(kept, between(ends, h), bound);
             &own
         };
         Some(QUINTIC * 720.0 * h.powi(6) * form.in_contact::<ORDERS>(growth, rates, 6)) // 6! of a Taylor coefficient
@@ -114,10 +109,7 @@ impl Segment<4> for Piece<'_> {
             let [from, to] = ends.map(|knot| self.state(knot));
             self.equations.change(h, &from, &to)
         };
-        let change = match self.shared {
-            Some(shared) => shared.changes.of(between(ends, h), bound),
-            None => bound(),
-        };
+        let change = once(self.shared.map(|shared| &shared.changes), between(ends, h), bound);
         change.map_or(f64::INFINITY, |change| form.rise_between(&change, slopes, h))
     }
 }

@@ -63,6 +63,19 @@ impl<A: PartialEq, V: Copy> Kept<A, V> {
     }
 }
 
+/// The value for these arguments, from what is kept, if anything is.
+#[inline]
+pub fn once<A: PartialEq, V: Copy>(
+    kept: Option<&Kept<A, V>>,
+    arguments: A,
+    compute: impl FnOnce() -> V,
+) -> V {
+    match kept {
+        Some(kept) => kept.of(arguments, compute),
+        None => compute(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
