@@ -90,7 +90,7 @@ pub use parameter::Parameter;
 pub use parameter::place::{Absent, Unsettable};
 pub use per_variable::PerVariable;
 pub use record::{BadSamples, Column, Record, RecordFile, SampledForce, Samples, Spacing};
-pub use regularised::bounds::{Change, Growth, ORDERS, OverContact};
+pub use regularised::bounds::{Change, Forces, Growth, ORDERS, OverContact};
 pub use regularised::{RegularisedContact, RegularisedState};
 pub use rms::Rms;
 pub use scene::{Primary, Scene, den_hartog, nishihara_asami, warburton};

@@ -7,8 +7,8 @@ mod collision;
 mod remainder;
 mod restoring;
 
+pub(crate) use restoring::Factor;
 pub use restoring::Restoring;
-pub(crate) use restoring::{Factor, Stage};
 
 use collision::{chi, langevin};
 use std::sync::Arc;

@@ -17,7 +17,7 @@
 pub(crate) mod bounds;
 pub(crate) mod overdamped;
 
-use crate::loss::{Law, Restoring, Stage};
+use crate::loss::{Law, Restoring};
 use crate::polynomial::{TERMS as WAVE, polynomial};
 use crate::{Coupled, Excitation, Side};
 use std::ops::Range;
@@ -210,9 +210,20 @@ impl RegularisedContact {
     /// Accelerations `[dw/dt, a1]` (m/s²). With `s` the side's sign, the spring stretched by `s z + wall - D`
     /// and the net force on the damper `-s (K q³ (1 + λ w) + c2 w + k2 (z + s (wall - D)))`.
     #[inline(always)]
-    fn accelerations(&self, &[q, w, x1, v1, t]: &RegularisedState) -> [f64; 2] {
-        let z = q * q;
-        let (cube, stretch) = (z * q * self.factor(q, w), z + self.stretch);
+    fn accelerations(&self, y: &RegularisedState) -> [f64; 2] {
+        self.accelerations_by(self.contact_over_stiffness(y), y)
+    }
+
+    /// `q³` times the factor of a loss: the contact's force over its stiffness K, m^1.5.
+    #[inline(always)]
+    pub fn contact_over_stiffness(&self, &[q, w, ..]: &RegularisedState) -> f64 {
+        q * q * q * self.factor(q, w)
+    }
+
+    /// The same from the contact's force over its stiffness.
+    #[inline(always)]
+    fn accelerations_by(&self, cube: f64, &[q, w, x1, v1, t]: &RegularisedState) -> [f64; 2] {
+        let stretch = q * q + self.stretch;
         // The force's polynomial comes last and alone: it is the longest chain of dependent operations.
         let resisting = self.primary[1] * v1 + self.primary[2] * x1;
         let push = |i: usize| self.hertz[i] * cube + self.dashpot[i] * w + self.spring[i] * stretch;
@@ -233,11 +244,6 @@ impl RegularisedContact {
             + self.hertz[0] * q.abs().powi(3) * self.most(w)
             + self.dashpot[0] * w.abs()
             + self.spring[0] * (q * q + self.stretch).abs()
-    }
-
-    /// The stage of a state.
-    fn stage(&self, law: &Restoring, y: &RegularisedState) -> Stage {
-        law.stage(self.half_square(y[0]), y[1])
     }
 
     /// `S = (2/5) κ q⁵`, m²/s²: half of the square of the speed of an undisturbed collision without loss that comes as far.

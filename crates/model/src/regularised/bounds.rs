@@ -1,8 +1,10 @@
 //! Proven bounds on the derivatives of the motion during a contact, from the equations with every term replaced by its size.
 
+mod change;
 mod stages;
 
 use super::{RegularisedContact, RegularisedState};
+pub use change::{Change, Forces};
 pub(super) use stages::product;
 use stages::{StageSeries, Stages};
 
@@ -32,23 +34,11 @@ pub struct OverContact {
     excitation: f64,
 }
 
-/// Bounds between two states, each the most and how far it may be from what it is at the nearer of the two.
-#[derive(Clone, Copy, Debug)]
-pub struct Change {
-    /// Of the four numbers of [`Growth`], m and m/s.
-    pub states: Growth<2>,
-    /// Of their rates in time, m/s and m/s².
-    pub rates: Growth<2>,
-    /// Of `q = dt/dθ`, √m.
-    pub root: [f64; 2],
-}
-
 /// Series with every term by its size: of the numbers of [`Growth`], of `a1` and of `dw/dt`.
 struct Series<const K: usize> {
     growth: Growth<K>,
     a1: [f64; K],
     rate: [f64; K],
-    stages: Option<StageSeries<K>>,
 }
 
 /// Bounds on a piece of a contact.
@@ -58,8 +48,8 @@ struct Bounds<'a> {
     state: [f64; 4],
     /// The least q, where the speed into the wall follows the forces.
     shallowest: f64,
-    /// On that of `dw/dt`, where it is known better than by the sizes of the forces, which hold each other where a wall holds the damper.
-    rate: f64,
+    /// On those of `a1` and `dw/dt`, where they are known better than by the sizes of the forces, which hold each other where a wall holds the damper.
+    rates: [f64; 2],
     /// On the force, N.
     force: f64,
     /// Of a restitution that is the same at every speed.
@@ -67,14 +57,14 @@ struct Bounds<'a> {
 }
 
 impl RegularisedContact {
-    /// Bounds on the Taylor coefficients in `θ` anywhere on a piece of the contact of length `h` (s/√m), from the states at its
+    /// Bounds on the Taylor coefficients in `θ` anywhere on a piece of the contact of length `h` (s/√m) that goes so far from the states at its
     /// ends; infinite if the piece is too long for the proof.
     ///
     /// A box that holds both ends, and that no motion can leave within `h/2` of either, holds the piece (Picard and Lindelöf). A longer piece has
     /// a box by the energy of the relative motion. In the box each coefficient follows from those before it by the equations, with all terms
     /// taken as positive.
-    pub fn growth(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Growth<ORDERS> {
-        let bounds = self.bounds_on(h, from, to);
+    pub fn growth(&self, h: f64, ends: [&RegularisedState; 2], change: &Option<Change>) -> Growth<ORDERS> {
+        let bounds = self.bounds_on(h, ends, change);
         bounds.map_or([[f64::INFINITY; ORDERS]; 4], |bounds| self.series::<ORDERS, false>(bounds).growth)
     }
 
@@ -82,10 +72,10 @@ impl RegularisedContact {
     pub fn growth_of_rates(
         &self,
         h: f64,
-        from: &RegularisedState,
-        to: &RegularisedState,
+        ends: [&RegularisedState; 2],
+        change: &Option<Change>,
     ) -> [Growth<ORDERS>; 2] {
-        let Some(bounds) = self.bounds_on(h, from, to) else {
+        let Some(bounds) = self.bounds_on(h, ends, change) else {
             return [[[f64::INFINITY; ORDERS]; 4]; 2];
         };
         let Series { growth, a1, rate, .. } = self.series::<ORDERS, true>(bounds);
@@ -93,53 +83,26 @@ impl RegularisedContact {
         [growth, [v1, a1, w, rate]]
     }
 
-    /// Bounds between two states `h` (s/√m) apart; `None` if the piece is too long for the proof. They need nothing of the factor of a loss but that
-    /// it lies between 0 and its largest, so that they hold where that factor turns too fast for the series: where `v` vanishes.
-    pub fn change(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Option<Change> {
-        if self.overdamped {
-            let bounds = self.bounds_between(h, from, to)?;
-            let Series { growth, a1, rate, .. } = self.series::<2, true>(bounds);
-            let within = |[most, slope]: [f64; 2]| [most, 0.5 * h * slope];
-            return Some(Change {
-                states: growth.map(within),
-                rates: [growth[1], a1, growth[3], rate].map(within),
-                root: within([bounds.state[0], 0.5 * bounds.state[1]]),
-            });
+    /// Bounds on a piece, by whichever proof holds; `None` if it is too long for both.
+    fn bounds_on(&self, h: f64, ends: [&RegularisedState; 2], change: &Option<Change>) -> Option<Bounds<'_>> {
+        match change {
+            Some(change) => Some(self.bounds_within(change, ends)),
+            None => self.bounds_by_energy(h, ends),
         }
-        let ends: [f64; 4] = std::array::from_fn(|i| from[i].abs().max(to[i].abs()));
-        let mut most = ends;
-        let excitation = self.primary[0] * self.most_force();
-        let turn = if self.is_linear() { self.primary[0] * self.force[1] } else { self.omega * excitation };
-        for _ in 0..8 {
-            let [q, w, x1, v1] = most;
-            let (stretch, contact) = (q * q + self.stretch.abs(), q * q * q * self.most(w));
-            let [a1, rate] = self.sizes_of_rates(excitation, &most);
-            let change = [0.5 * w, q * rate, q * v1, q * a1].map(|slope| 0.5 * h * slope);
-            let reach: [f64; 4] = std::array::from_fn(|i| ends[i] + change[i]);
-            if (0..4).all(|i| reach[i] <= most[i]) {
-                let [of_q, of_w, of_x1, of_v1] = change;
-                let of_stretch = 2.0 * q * of_q;
-                let turning = 0.5 * h * q * turn;
-                let outside = turning + self.primary[1] * of_v1 + self.primary[2] * of_x1;
-                let [of_a1, of_rate] = [0, 1].map(|i| {
-                    outside + self.hertz[i] * contact + self.dashpot[i] * of_w + self.spring[i] * of_stretch
-                });
-                return Some(Change {
-                    states: [[x1, of_x1], [v1, of_v1], [stretch, of_stretch], [w, of_w]],
-                    rates: [[v1, of_v1], [a1, of_a1], [w, of_w], [rate, of_rate]],
-                    root: [q, of_q],
-                });
-            }
-            for i in 0..4 {
-                most[i] = most[i].max(1.05 * reach[i]);
-            }
-        }
-        None
     }
 
-    /// Bounds on a piece `h` (s/√m) long between two states, by either proof; `None` if it is too long for both.
-    fn bounds_on(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Option<Bounds<'_>> {
-        self.bounds_between(h, from, to).or_else(|| self.bounds_by_energy(h, from, to))
+    /// Bounds that follow from how far the piece goes from the states at its ends.
+    fn bounds_within(&self, change: &Change, [from, to]: [&RegularisedState; 2]) -> Bounds<'_> {
+        let [[x1, _], [v1, _], _, [w, of_w]] = change.states;
+        let [_, [a1, _], _, [rate, _]] = change.rates;
+        let [q, of_q] = change.root;
+        let shallowest = (from[0].min(to[0]) - of_q).max(0.0);
+        let speeds = [from[1].min(to[1]) - of_w, from[1].max(to[1]) + of_w];
+        let stages = self
+            .restoring
+            .as_deref()
+            .map(|law| Stages::between(law, [shallowest, q].map(|q| self.half_square(q)), speeds));
+        Bounds { state: [q, w, x1, v1], shallowest, rates: [a1, rate], force: self.most_force(), stages }
     }
 
     /// The sums of the sizes of all terms of `a1` and of `dw/dt`, m/s², of bounds on `[q, w, x1, v1]` and on what the force adds to `a1`.
@@ -154,25 +117,21 @@ impl RegularisedContact {
         if self.is_linear() { self.force[0] } else { self.cos[0][0].hypot(self.sin[0][0]) }
     }
 
-    /// Bounds on a piece; `None` if it is too long for the proof.
-    fn bounds_between(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Option<Bounds<'_>> {
+    /// Bounds on a piece in which the speed follows the forces; `None` if it is too long for the proof.
+    fn bounds_if_following(&self, h: f64, [from, to]: [&RegularisedState; 2]) -> Option<Bounds<'_>> {
         let ends: [f64; 4] = std::array::from_fn(|i| from[i].abs().max(to[i].abs()));
-        let stages =
-            self.restoring.as_deref().map(|law| Stages::of(law, [from, to].map(|y| self.stage(law, y))));
         let shallowest = from[0].min(to[0]);
-        let mut bounds =
-            Bounds { state: ends, shallowest, rate: f64::INFINITY, force: self.most_force(), stages };
+        let force = self.most_force();
+        let mut bounds = Bounds { state: ends, shallowest, rates: [f64::INFINITY; 2], force, stages: None };
         let mut farther = [f64::INFINITY; 2];
         for _ in 0..8 {
             let series = self.series::<2, false>(bounds);
             let [x1, v1, _, w] = series.growth;
             let slopes = [0.5 * bounds.state[1], w[1], x1[1], v1[1]];
             let reach: [f64; 4] = std::array::from_fn(|i| ends[i] + 0.5 * h * slopes[i]);
-            let reached = stages.map(|stages| stages.widened(series.stages, 0.5 * h));
-            let staged = bounds.stages.zip(reached).is_none_or(|(bounds, reached)| bounds.hold(&reached));
             let least = shallowest - 0.5 * h * slopes[0];
-            let away = !self.overdamped || least >= bounds.shallowest;
-            if staged && away && (0..4).all(|i| reach[i] <= bounds.state[i]) {
+            let away = least >= bounds.shallowest;
+            if away && (0..4).all(|i| reach[i] <= bounds.state[i]) {
                 return Some(bounds);
             }
             if !away {
@@ -190,7 +149,6 @@ impl RegularisedContact {
             for i in 0..4 {
                 bounds.state[i] = bounds.state[i].max(1.05 * reach[i]);
             }
-            bounds.stages = bounds.stages.zip(reached).map(|(bounds, reached)| bounds.joined(&reached));
         }
         None
     }
@@ -202,7 +160,7 @@ impl RegularisedContact {
     /// damper into the wall, and `a0` that at the start, `ε² = w² + 2 (U(z) - a0 z - least)` changes by `dε/dt <= |a - a0|`, since dashpot and losses only
     /// take from it. `U` is convex, and no softer than the spring, so that at the start `ε² <= w² + (U' - a0)² / U''` with the least `U''` on the way to
     /// where `U' = a0`; and later `|w| <= ε`, `|U' - a0| <= √U'' ε` with the greatest, and `z` is at most `(ε0 + ε) / √spring` from where it was.
-    fn bounds_by_energy(&self, h: f64, from: &RegularisedState, to: &RegularisedState) -> Option<Bounds<'_>> {
+    fn bounds_by_energy(&self, h: f64, [from, to]: [&RegularisedState; 2]) -> Option<Bounds<'_>> {
         if self.restoring.is_some() || self.overdamped {
             return None;
         }
@@ -239,7 +197,8 @@ impl RegularisedContact {
             if (0..4).all(|i| reach[i] <= state[i]) {
                 let stiffest = stiffness(q.max(deepest.sqrt()));
                 let rate = stiffest.sqrt() * energy + change + lost(q, w);
-                return Some(Bounds { state, shallowest: 0.0, rate, force, stages: None });
+                let rates = [f64::INFINITY, rate];
+                return Some(Bounds { state, shallowest: 0.0, rates, force, stages: None });
             }
             for i in 0..4 {
                 state[i] = state[i].max(1.05 * reach[i]);
@@ -294,8 +253,9 @@ impl RegularisedContact {
             if !self.overdamped {
                 (a1[k], rate[k]) = (outside + push(0), apart + push(1));
             }
+            let beside = rate[k] - self.hertz[1] * force[k];
             if k == 0 {
-                rate[0] = rate[0].min(bounds.rate);
+                (a1[0], rate[0]) = (a1[0].min(bounds.rates[0]), rate[0].min(bounds.rates[1]));
             }
             if k + 1 == K {
                 break;
@@ -308,10 +268,10 @@ impl RegularisedContact {
             (v1[k + 1], w[k + 1]) = (product(&q, &a1, k) * next, product(&q, &rate, k) * next);
             q[k + 1] = 0.5 * w[k] * next;
             if let Some(stages) = &mut stages {
-                stages.extend(k, &q, self.hertz[1] * cube[k], rate[k] - self.hertz[1] * force[k]);
+                stages.extend(k, &q, self.hertz[1] * cube[k], [beside, rate[k]]);
             }
         }
-        Series { growth: [x1, v1, stretch, w], a1, rate, stages }
+        Series { growth: [x1, v1, stretch, w], a1, rate }
     }
 
     /// Bounds over a whole contact of `duration` seconds that begins at `touch` (`q = 0`); `None` if forces other than Hertz's may

@@ -109,6 +109,15 @@ impl<Q> Search<Q> {
         self.search(segment, a, b, remainder);
     }
 
+    /// A bound on the largest value between two places that is coarse, but holds where [`Self::quintic_error`] is infinite.
+    pub fn coarse_bound<const N: usize>(&self, segment: &impl Segment<N>, a: &Place<N>, b: &Place<N>) -> f64
+    where
+        Q: Quantity<N>,
+    {
+        let (form, slopes) = (self.quantity.form(), [a.2[1], b.2[1]]);
+        a.2[0].max(b.2[0]) + segment.rise(form, [&a.1, &b.1], slopes, b.0 - a.0)
+    }
+
     /// Looks for a maximum above the record between two places. `remainder` bounds how far the quantity leaves its quintic there.
     fn search<const N: usize>(
         &mut self,
@@ -126,9 +135,7 @@ impl<Q> Search<Q> {
             f64::INFINITY
         };
         if says_little(remainder, highest, a, b) {
-            let (form, slopes) = (self.quantity.form(), [a.2[1], b.2[1]]);
-            let ends = a.2[0].max(b.2[0]);
-            highest = highest.min(ends + segment.rise(form, [&a.1, &b.1], slopes, b.0 - a.0));
+            highest = highest.min(self.coarse_bound(segment, a, b));
         }
         // A bound that is NaN drops nothing.
         if highest <= self.record.value {

@@ -7,9 +7,10 @@
 //! dh/dθ = f σ      dG/dθ = -h σ      dD/dθ = 2 χ G f σ      d(1/v)/dθ = -q/v² A h / D      f = 1 + χ h
 //! ```
 //!
+//! with `f σ = q/v (dw/dt - A h²/D)`, which is small where a wall holds the damper, as dw/dt and h are small there.
 //! So `h`, `1/v`, `G` and `1/D` obey polynomial equations among themselves, and each coefficient follows from those before it.
 
-use crate::loss::{Restoring, Stage};
+use crate::loss::Restoring;
 
 /// Term `k` of the product of two series.
 #[inline(always)]
@@ -32,32 +33,16 @@ pub struct Stages<'a> {
 }
 
 impl<'a> Stages<'a> {
-    /// Of two stages.
-    pub fn of(law: &'a Restoring, [a, b]: [Stage; 2]) -> Self {
-        let slowness = (1.0 / a.v).max(1.0 / b.v);
-        Self { law, h: [a.h.min(b.h), a.h.max(b.h)], slowness }
+    /// Those where `S` and `w` lie between these. `v` grows with `S` and the size of `w`.
+    pub fn between(law: &'a Restoring, s: [f64; 2], w: [f64; 2]) -> Self {
+        let h = Self::corners(s, w).map(|[s, w]| law.stage(s, w).h);
+        let slowest = law.stage(s[0], 0.0_f64.max(w[0]).min(w[1]));
+        Self { law, h, slowness: 1.0 / slowest.v }
     }
 
-    /// What may be reached within `h` of where they hold, by slopes that are bounded.
-    pub fn widened<const K: usize>(self, series: Option<StageSeries<K>>, h: f64) -> Self {
-        let Some([stage, slowness]) = series.map(|series| series.slopes()) else { return self };
-        let [low, high] = self.h;
-        let reach = h * stage;
-        Self { h: [low - reach, high + reach], slowness: self.slowness + h * slowness, ..self }
-    }
-
-    /// Whether others lie within.
-    pub fn hold(&self, other: &Self) -> bool {
-        let ([low, high], [least, greatest]) = (self.h, other.h);
-        low <= least && greatest <= high && other.slowness <= self.slowness
-    }
-
-    /// Bounds that hold both, and a little more.
-    pub fn joined(&self, other: &Self) -> Self {
-        let ([low, high], [least, greatest]) = (self.h, other.h);
-        let spare = 0.05 * (greatest - least);
-        let h = [low.min(least - spare), high.max(greatest + spare)];
-        Self { h, slowness: self.slowness.max(1.05 * other.slowness), ..*self }
+    /// Where `h` is least and greatest as `S` and `w` lie between these: it grows with `w`, and for a `w` of one sign it nears 0 as `S` grows.
+    pub fn corners([shallow, deep]: [f64; 2], [slow, fast]: [f64; 2]) -> [[f64; 2]; 2] {
+        [[if slow < 0.0 { shallow } else { deep }, slow], [if fast > 0.0 { shallow } else { deep }, fast]]
     }
 }
 
@@ -72,8 +57,8 @@ pub struct StageSeries<const K: usize> {
     g: [f64; K],
     /// 1/D.
     by_d: [f64; K],
-    /// What follows from them: q/v, A, 2 G / D, κ q³ + 2 A G / D, σ, f σ, h / D, A h / D, A h / (D v), and G f σ / D².
-    more: [[f64; K]; 10],
+    /// What follows from them: q/v, A, 2 G / D, κ q³ + 2 A G / D, σ, f σ, h / D, A h / D, dw/dt + A h² / D, A h / (D v), and G f σ / D².
+    more: [[f64; K]; 11],
 }
 
 impl<const K: usize> StageSeries<K> {
@@ -85,7 +70,7 @@ impl<const K: usize> StageSeries<K> {
             series
         };
         // G is greatest where h is nearest to 0, and D, which grows with h, least where h is.
-        let [first, middle] = [low, 0.0_f64.clamp(low, high)].map(|h| law.stage_at(h));
+        let [first, middle] = [low, 0.0_f64.max(low).min(high)].map(|h| law.stage_at(h));
         Self {
             chi: law.chi,
             h: start(low.abs().max(high.abs())),
@@ -93,23 +78,24 @@ impl<const K: usize> StageSeries<K> {
             f: start(1.0 + law.chi * high),
             g: start(middle.g),
             by_d: start(1.0 / first.d),
-            more: [[0.0; K]; 10],
+            more: [[0.0; K]; 11],
         }
     }
 
     /// Term `k + 1` of each, from term `k` of q, of `κ q³`, and of the acceleration by all but the contact, `beside`.
-    pub fn extend(&mut self, k: usize, q: &[f64; K], hertz: f64, beside: f64) {
+    pub fn extend(&mut self, k: usize, q: &[f64; K], hertz: f64, [beside, rate]: [f64; 2]) {
         let next = 1.0 / (k + 1) as f64;
         let Self { chi, h, slowness, f, g, by_d, more } = self;
-        let [along, accel, share, inner, sigma, slope, hd, turned, slowed, gathered] = more;
+        let [along, accel, share, inner, sigma, slope, hd, turned, slower, slowed, gathered] = more;
         along[k] = product(q, slowness, k);
         accel[k] = beside;
         share[k] = 2.0 * product(g, by_d, k);
         inner[k] = hertz + product(accel, share, k);
         sigma[k] = product(along, inner, k);
-        slope[k] = product(f, sigma, k);
         hd[k] = product(h, by_d, k);
         turned[k] = product(accel, hd, k);
+        slower[k] = rate + product(turned, h, k);
+        slope[k] = product(along, slower, k);
         slowed[k] = product(turned, slowness, k);
         gathered[k] = 0.5 * product(share, slope, k);
         h[k + 1] = slope[k] * next;
@@ -117,10 +103,5 @@ impl<const K: usize> StageSeries<K> {
         g[k + 1] = product(h, sigma, k) * next;
         slowness[k + 1] = product(along, slowed, k) * next;
         by_d[k + 1] = 2.0 * *chi * product(by_d, gathered, k) * next;
-    }
-
-    /// Bounds on the first coefficients of h and of 1/v.
-    pub fn slopes(&self) -> [f64; 2] {
-        [self.h[1], self.slowness[1]]
     }
 }

@@ -5,7 +5,7 @@ use crate::methods::dop853::{self, Step};
 use crate::motion::form::{Form, QUINTIC};
 use crate::motion::knot::{Jet, Knot};
 use crate::motion::segment::Segment;
-use retune_model::{Growth, ORDERS, RegularisedContact, RegularisedState};
+use retune_model::{Change, Growth, ORDERS, RegularisedContact, RegularisedState};
 use std::cell::OnceCell;
 
 // Components of a regularised state.
@@ -105,12 +105,7 @@ impl Segment<4> for Piece<'_> {
     }
 
     fn rise(&self, form: &Form<4>, ends: [&Knot<4>; 2], slopes: [f64; 2], h: f64) -> f64 {
-        let bound = || {
-            let [from, to] = ends.map(|knot| self.state(knot));
-            self.equations.change(h, &from, &to)
-        };
-        let change = once(self.shared.map(|shared| &shared.changes), between(ends, h), bound);
-        change.map_or(f64::INFINITY, |change| form.rise_between(&change, slopes, h))
+        self.change(ends, h).map_or(f64::INFINITY, |change| form.rise_between(&change, slopes, h))
     }
 }
 
@@ -121,13 +116,22 @@ impl Piece<'_> {
         [knot.clock[0], w, x1, v1, knot.t - self.touch_down]
     }
 
+    /// How far the motion goes between two places `h` apart.
+    fn change(&self, ends: [&Knot<4>; 2], h: f64) -> Option<Change> {
+        let bound = || {
+            let states = ends.map(|knot| self.state(knot));
+            self.equations.change(h, states.each_ref())
+        };
+        once(self.shared.map(|shared| &shared.changes), between(ends, h), bound)
+    }
+
     /// Bounds between two places `h` apart; those of the rates where a form needs them.
     fn growth(&self, form: &Form<4>, ends: [&Knot<4>; 2], h: f64) -> [Growth<ORDERS>; 2] {
-        let [from, to] = ends.map(|knot| self.state(knot));
+        let (states, change) = (ends.map(|knot| self.state(knot)), self.change(ends, h));
         if form.is_rated() {
-            self.equations.growth_of_rates(h, &from, &to)
+            self.equations.growth_of_rates(h, states.each_ref(), &change)
         } else {
-            [self.equations.growth(h, &from, &to), [[0.0; ORDERS]; 4]]
+            [self.equations.growth(h, states.each_ref(), &change), [[0.0; ORDERS]; 4]]
         }
     }
 

@@ -1,5 +1,6 @@
 //! The rate of a quantity in flight, bounded by the four numbers that a motion in contact consists of.
 
+use super::times;
 use crate::system::LinearSystem;
 
 /// The rate at which a quantity changes in flight, as a polynomial in the numbers of `retune_model::Growth` with every coefficient by its size:
@@ -11,6 +12,8 @@ use crate::system::LinearSystem;
 pub struct SlopeInFlight<const N: usize> {
     constant: f64,
     linear: [f64; N],
+    /// The part of `linear` by the force.
+    driven: [f64; N],
     square: [[f64; N]; N],
 }
 
@@ -31,13 +34,19 @@ impl<const N: usize> SlopeInFlight<N> {
         };
         let (own, driven) = turned(linear);
         let (mut slope, mut square) = (
-            Self { constant: driven.abs(), linear: own.map(f64::abs), square: [[0.0; N]; N] },
+            Self {
+                constant: driven.abs(),
+                linear: own.map(f64::abs),
+                driven: [0.0; N],
+                square: [[0.0; N]; N],
+            },
             [[0.0; N]; N],
         );
         for (weight, row) in squares {
             let (numbers, (rate, driven)) = (by_number(row), turned(row));
             for i in 0..N {
                 slope.linear[i] += (weight * numbers[i] * driven).abs();
+                slope.driven[i] += (weight * numbers[i] * driven).abs();
                 for j in 0..N {
                     square[i][j] += weight * numbers[i] * rate[j];
                 }
@@ -57,6 +66,17 @@ impl<const N: usize> SlopeInFlight<N> {
         for i in 0..N {
             let by = (0..N).map(|j| self.square[i][j] * most[j]).sum::<f64>();
             sum += (self.linear[i] + by) * most[i];
+        }
+        sum
+    }
+
+    /// How far it may be from what it is where the numbers are no farther than `of` away, and the force no farther than a share `turn` of its
+    /// bound. Numbers at both places are at most `most`.
+    pub fn within(&self, most: &[f64; N], of: &[f64; N], turn: f64) -> f64 {
+        let mut sum = times(self.constant, turn);
+        for i in 0..N {
+            let by = (0..N).map(|j| 2.0 * self.square[i][j] * most[j]).sum::<f64>();
+            sum += times(self.linear[i] + by, of[i]) + times(self.driven[i] * turn, most[i]);
         }
         sum
     }
