@@ -104,8 +104,8 @@ where
         self.search.note(rates_b[0], b.t);
         let from = (0.0, *a, in_theta(rates_a, a.clock));
         let to = (segment.length(), *b, in_theta(rates_b, b.clock));
-        // Where a look is dear the coarse bound comes first.
-        if segment.cost() > 1 && self.search.coarse_bound(segment, &from, &to) <= self.search.record.value {
+        // In a contact the coarse bound costs less than the other.
+        if self.search.coarse_bound(segment, &from, &to) <= self.search.record.value {
             self.search.looks += segment.cost();
             return;
         }
