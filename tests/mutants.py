@@ -15,7 +15,7 @@ AT_ONCE = 10
 # Files of each crate, and its tests: quick and decisive ones first, what they miss to the next; after an @ those of another crate, after
 # two dashes words for the test programs themselves.
 CRATES = {
-    "retune-model": (["crates/model/src/*"], ["--tests"]),
+    "retune-model": (["crates/model/src/*"], ["--tests", "@retune-solver --lib --test solver", "@retune-dynamics --tests", "@retune-jobs --lib"]),
     "retune-solver": (["crates/solver/src/*"], [
         "--test solver -- extremes:: reference:: work::",
         "--lib --test allocation --test solver -- --skip any_scene:: --skip edge:: --skip hunt::",

@@ -5,6 +5,8 @@ pub mod draw;
 pub mod energy;
 pub mod missed;
 pub mod objective;
+#[cfg(feature = "integrators")]
+pub mod others;
 pub mod rigid;
 pub mod stable;
 
@@ -29,6 +31,8 @@ pub enum Verdict {
     Says,
     /// A wrong answer without an error.
     Silent,
+    /// Its program has no such contact.
+    NotRun,
 }
 
 /// Largest error of a cell that works.
@@ -44,6 +48,7 @@ impl Verdict {
             Verdict::Inaccurate => "inaccurate",
             Verdict::Says => "says it fails",
             Verdict::Silent => "fails silently",
+            Verdict::NotRun => "not run",
         }
     }
 
@@ -120,6 +125,13 @@ pub struct Truth {
     pub shortest_contact: Option<f64>,
 }
 
+impl Truth {
+    /// How long the shortest contact lasts, in words.
+    fn contact(&self) -> Option<String> {
+        self.shortest_contact.map(|s| format!("{:.2} ms", s * 1e3))
+    }
+}
+
 /// How long contacts last.
 #[derive(Default)]
 struct Durations {
@@ -164,11 +176,16 @@ pub fn truth(difficulty: &Difficulty) -> Result<Truth, String> {
 
 /// One cell of the atlas.
 pub fn cell(way: &Way, case: &Case, truth: &Truth) -> Cell {
+    judged(runs::run(case, &way.settings(), false), case, truth, &why(way, truth))
+}
+
+/// The cell of a run, with the reason why such a run may fail.
+fn judged(run: Result<Found, String>, case: &Case, truth: &Truth, why: &str) -> Cell {
     let expected = truth.found.impacts;
-    let found = match runs::run(case, &way.settings(), false) {
+    let found = match run {
         Ok(found) => found,
         Err(said) => {
-            let cause = format!("it says \"{said}\": {}", why(way, truth));
+            let cause = format!("it says \"{said}\": {why}");
             return Cell {
                 verdict: Verdict::Says,
                 error: f64::NAN,
@@ -185,40 +202,43 @@ pub fn cell(way: &Way, case: &Case, truth: &Truth) -> Cell {
     let counted = format!("{} touch-downs instead of {}", impacts[0], impacts[1]);
     let cause = match (verdict, impacts[0] == impacts[1]) {
         (Verdict::Works, _) => String::new(),
-        (_, true) => why(way, truth),
+        (_, true) => why.to_owned(),
         (Verdict::Miscounts, _) => format!(
             "{counted}, and the motion is right all the same: a contact is shallower than the error of a position, or shorter \
              than a step at whose ends alone it could be seen"
         ),
-        (_, false) => format!("{counted}: {}", why(way, truth)),
+        (_, false) => format!("{counted}: {why}"),
     };
     Cell { verdict, error, impacts, evaluations: found.evaluations, cause }
 }
 
 /// The reason why a method loses accuracy on a scene.
 fn why(way: &Way, truth: &Truth) -> String {
-    let contact = truth.shortest_contact.map(|s| format!("{:.2} ms", s * 1e3));
-    match (way.method.has_fixed_step(), contact, way.contacts) {
-        (true, Some(contact), _) => format!(
-            "steps of {} ms through contacts as short as {contact}, and no error estimate that could tell",
-            way.setting * 1e3
+    let step = way.setting * 1e3;
+    match (way.method.has_fixed_step(), truth.contact()) {
+        (true, Some(contact)) => format!(
+            "steps of {step} ms through contacts as short as {contact}, and no error estimate that could tell"
         ),
-        (true, None, _) => format!(
-            "every step of {} ms has an error that no estimate sees, and the run adds them up",
-            way.setting * 1e3
-        ),
-        (false, Some(contact), Contacts::Stepped) => format!(
+        (true, None) => {
+            format!("every step of {step} ms has an error that no estimate sees, and the run adds them up")
+        }
+        (false, _) => why_by_tolerance(way.contacts, way.setting, truth),
+    }
+}
+
+/// The same of a method that follows a tolerance.
+fn why_by_tolerance(contacts: Contacts, rtol: f64, truth: &Truth) -> String {
+    match (truth.contact(), contacts) {
+        (Some(contact), Contacts::Stepped) => format!(
             "the force z^1.5 has no second derivative at touch-down, which the estimate of a step over one takes for granted, \
              and each contact (as short as {contact}) magnifies what the last one left"
         ),
-        (false, Some(contact), Contacts::Located) => format!(
-            "the tolerance {:e} bounds the error of one step; contacts as short as {contact} magnify what steps leave",
-            way.setting
+        (Some(contact), Contacts::Located) => format!(
+            "the tolerance {rtol:e} bounds the error of one step; contacts as short as {contact} magnify what steps leave"
         ),
-        (false, None, _) => format!(
-            "the tolerance {:e} bounds the error of one step, not their sum over the run",
-            way.setting
-        ),
+        (None, _) => {
+            format!("the tolerance {rtol:e} bounds the error of one step, not their sum over the run")
+        }
     }
 }
 

@@ -43,6 +43,11 @@ fn all(case: &Case) -> Vec<(Way, Vec<f64>)> {
     series
 }
 
+/// The full name of a program that is built in, from its beginning.
+pub fn program(begins: &str) -> Option<&'static str> {
+    PEERS.iter().map(|peer| peer.program).find(|program| program.starts_with(begins))
+}
+
 /// One run, with its time or without.
 pub fn attempt(
     case: &Case,

@@ -9,6 +9,7 @@ use retune_solver::{
     Contacts, Hybrid, Method, Motion, Phase, Settings, SolverError, Window, e1_max, simulate, touch_downs,
 };
 use std::fmt::Write;
+use std::process::{Command, Stdio};
 use std::time::Instant;
 use std::{fs, io};
 
@@ -273,6 +274,22 @@ pub fn way(settings: &Settings) -> &'static str {
     own.map_or("exact", |(_, name)| name)
 }
 
+/// CVODE on the scenes of a file, compiled by the recipes from C.
+const CVODE: &str = "target/cvode";
+
+/// The lines that it writes; none where it has not been built.
+#[allow(clippy::print_stderr, reason = "of the programs of this crate")]
+pub fn cvode(scenes: &str) -> String {
+    let run = Command::new(CVODE).arg(scenes).stderr(Stdio::null()).output();
+    run.map_or_else(
+        |_| {
+            eprintln!("CVODE is left out: there is no {CVODE}");
+            String::new()
+        },
+        |output| String::from_utf8_lossy(&output.stdout).into_owned(),
+    )
+}
+
 /// Tables of the runs of interpreted programs, made by `just lab accuracy-external`.
 const TABLES: [&str; 2] = ["tests/reference/external/octave.csv", "tests/reference/external/scipy.csv"];
 
@@ -299,7 +316,7 @@ fn external_row(line: &str, case: &Case, reference: &Found) -> Option<Row> {
     let (fields, spread) = fields.split_at_checked(13)?;
     let [program, method, scene, setting, seconds, evaluations, e1_max, x1, v1, x2, v2, impacts, failure] =
         fields.try_into().ok()?;
-    if scene != case.name {
+    if scene != case.name.replace(',', ";") {
         return None;
     }
     let mut found = Found {

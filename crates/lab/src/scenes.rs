@@ -1,6 +1,7 @@
 //! The scenes of the comparison: the paper's structure (Table 2) with eleven dampers.
 
-use retune_model::Scene;
+use crate::system;
+use retune_model::{Scene, Side};
 pub use retune_testkit::scenes::{Numbers, ROW1, SSVI, TMD};
 
 /// A scene and the span of time over which its motion can be predicted.
@@ -48,4 +49,36 @@ pub fn cases() -> Vec<Case> {
     ]
     .map(|(name, label, to, scene)| Case { name, label, scene, to })
     .into()
+}
+
+/// The scenes as plain numbers for other programs.
+pub fn in_json<'a>(cases: impl Iterator<Item = &'a Case>) -> Result<String, serde_json::Error> {
+    let list: Vec<_> = cases
+        .map(|case| {
+            let (p, f) = (&case.scene.primary, &case.scene.forcing);
+            let mut object = serde_json::json!({
+                "scene": case.name.replace(',', ";"), "T": case.to,
+                "m1": p.mass.get(), "c1": p.damping.get(), "k1": p.stiffness.get(),
+                "P": f.amplitude().map_or(0.0, |(_, amplitude)| amplitude.get()), "omega": f.frequency.get(),
+            });
+            let numbers = match case.scene.damper.zip(system(&case.scene)) {
+                None => serde_json::json!({"m2": 1.0, "k2": 0.0, "c2": 0.0, "D": 1e6, "C": 1e6, "K1": 0.0, "K3": 0.0}),
+                Some((d, system)) => serde_json::json!({
+                    "m2": d.mass.get(), "k2": d.stiffness.get(), "c2": d.damping.get(),
+                    "D": d.rest_distance.get(), "C": d.clearance.get(),
+                    "K1": system.hertz(Side::Primary), "K3": system.hertz(Side::Obstacle),
+                    "lambda": system.regularised_contact(Side::Primary).lambda(),
+                    "restitution": system.restitution().or_else(|| {
+                        system.regularised_contact(Side::Primary).restoring().map(|law| law.restitution())
+                    }),
+                    "rigid": system.is_rigid(),
+                }),
+            };
+            if let (Some(all), serde_json::Value::Object(more)) = (object.as_object_mut(), numbers) {
+                all.extend(more);
+            }
+            object
+        })
+        .collect();
+    Ok(serde_json::to_string_pretty(&list)? + "\n")
 }

@@ -1,6 +1,6 @@
 //! The atlas as one picture: a method in each column, a difficulty in each row.
 
-use super::{Cell, Verdict, WAYS};
+use super::{Cell, Verdict};
 use crate::Any;
 use retune_report::colour::{Colour, GREEN, ORANGE, SKY, VERMILION, YELLOW};
 use retune_report::{Axis, Chart, Key, Layer, Sheet, Stand, Width, svg, ten_to};
@@ -11,7 +11,7 @@ use std::path::Path;
 const GAP: f64 = 0.4;
 /// Height of a row, pt.
 const ROW: f64 = 15.5;
-/// All verdicts, the best first.
+/// All verdicts of runs, the best first.
 pub const VERDICTS: [Verdict; 5] =
     [Verdict::Works, Verdict::Miscounts, Verdict::Inaccurate, Verdict::Says, Verdict::Silent];
 
@@ -26,6 +26,7 @@ const fn look(verdict: Verdict) -> (&'static str, Colour, f64) {
         Verdict::Inaccurate => ("≈", ORANGE, 0.4),
         Verdict::Says => ("!", SKY, 0.4),
         Verdict::Silent => ("✗", VERMILION, 0.85),
+        Verdict::NotRun => ("–", SKY, 0.0),
     }
 }
 
@@ -54,8 +55,17 @@ fn thousands(count: u64) -> String {
     }
 }
 
-/// Draws the matrix.
-pub fn matrix(path: &Path, rows: &[Row]) -> Any<()> {
+/// A name in two lines, the last word below.
+fn in_lines(name: &str) -> String {
+    match name.rsplit_once(' ') {
+        Some((first, "ms")) => in_lines(first) + " ms",
+        Some((first, last)) => format!("{first}\n{last}"),
+        None => name.to_owned(),
+    }
+}
+
+/// Draws the matrix of methods of these names.
+pub fn matrix(path: &Path, title: &str, ways: &[&str], rows: &[Row]) -> Any<()> {
     let mut layers = Vec::new();
     let (mut names, mut y, mut group) = (Vec::new(), 0.0, rows.first().map_or("", |row| row.0));
     for (of, name, cells) in rows {
@@ -67,7 +77,11 @@ pub fn matrix(path: &Path, rows: &[Row]) -> Any<()> {
         for (x, cell) in cells.iter().enumerate().map(|(j, cell)| (j as f64, cell)) {
             let (sign, colour, opacity) = look(cell.verdict);
             layers.push(Layer::Band { x: (x - 0.48, x + 0.48), y: (y - 0.46, y + 0.46), colour, opacity });
-            let said = if cell.verdict == Verdict::Says { "stops".into() } else { figure(cell.error) };
+            let said = match cell.verdict {
+                Verdict::Says => "stops".into(),
+                Verdict::NotRun => "not run".into(),
+                _ => figure(cell.error),
+            };
             layers.push(Layer::Text { at: (x, y + 0.2), text: format!("{sign} {said}"), stand: Stand::Cell });
             if cell.evaluations > 0 {
                 layers.push(Layer::Text {
@@ -82,14 +96,14 @@ pub fn matrix(path: &Path, rows: &[Row]) -> Any<()> {
     let totals = |j: usize, verdict| rows.iter().filter(|row| row.2[j].verdict == verdict).count();
     y -= GAP;
     names.push((y, format!("works, of {}; fails silently", rows.len())));
-    for j in 0..WAYS.len() {
+    for j in 0..ways.len() {
         let text = format!("{}; {}", totals(j, Verdict::Works), totals(j, Verdict::Silent));
         layers.push(Layer::Text { at: (j as f64, y), text, stand: Stand::Over });
     }
-    let ways = WAYS.iter().enumerate().map(|(j, way)| (j as f64, way.name.replacen(' ', "\n", 1))).collect();
+    let columns = ways.iter().enumerate().map(|(j, way)| (j as f64, in_lines(way))).collect();
     let chart = Chart {
         title: String::new(),
-        x: Axis::of_names((-0.55, WAYS.len() as f64 - 0.45), ways),
+        x: Axis::of_names((-0.55, ways.len() as f64 - 0.45), columns),
         y: Axis::of_names((y - 0.6, 0.6), names),
         layers,
         height: ROW * (1.2 - y) + 30.0,
@@ -98,16 +112,16 @@ pub fn matrix(path: &Path, rows: &[Row]) -> Any<()> {
         let (sign, colour, opacity) = look(verdict);
         (Key::Area(colour, opacity), format!("{sign} {}", verdict.name()))
     };
-    let count = |verdict| (0..WAYS.len()).map(|j| totals(j, verdict)).sum::<usize>();
+    let count = |verdict| (0..ways.len()).map(|j| totals(j, verdict)).sum::<usize>();
     let counts = VERDICTS.map(|verdict| format!("{} {}", count(verdict), verdict.name()));
     fs::write(
         path,
         svg(&Sheet {
-            title: "Where methods fail".to_owned(),
+            title: title.to_owned(),
             description: format!(
                 "A table of {} difficulties and {} methods. Of its cells: {}.",
                 rows.len(),
-                WAYS.len(),
+                ways.len(),
                 counts.join(", ")
             ),
             width: Width::Page,

@@ -7,16 +7,12 @@ use retune_jobs::methods;
 use retune_lab::curves::{Cost, Measure, work_precision};
 use retune_lab::reference::{REFERENCE, Reference};
 use retune_lab::runs::{self, Row, csv, external, of_table, parse};
-use retune_lab::scenes::{Case, cases};
-use retune_lab::{Any, comparison, machine, savings, sealed, statistics, system, text};
-use retune_model::Side;
+use retune_lab::scenes::{Case, cases, in_json};
+use retune_lab::{Any, comparison, machine, savings, sealed, statistics, text};
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Stdio};
 
 const SCENES: &str = "tests/reference/external/scenes.json";
-/// CVODE on those scenes, compiled by the recipe from C.
-const CVODE: &str = "target/cvode";
 
 fn main() -> Any<()> {
     let folder = Path::new("results/accuracy");
@@ -35,15 +31,8 @@ fn main() -> Any<()> {
 fn measure(folder: &Path, cases: &[Case], references: &[Reference]) -> Any<()> {
     fs::create_dir_all(folder)?;
     fs::write(folder.join(machine::NAME), format!("{:#}\n", machine::this()))?;
-    fs::write(SCENES, scenes_json(cases)?)?;
-    let cvode = Command::new(CVODE).arg(SCENES).stderr(Stdio::null()).output();
-    let cvode = cvode.map_or_else(
-        |_| {
-            eprintln!("CVODE is left out: there is no {CVODE}");
-            String::new()
-        },
-        |output| String::from_utf8_lossy(&output.stdout).into_owned(),
-    );
+    fs::write(SCENES, in_json(cases.iter())?)?;
+    let cvode = runs::cvode(SCENES);
     let interpreted = external()?;
     let mut rows = Vec::new();
     for (case, reference) in cases.iter().zip(references) {
@@ -98,37 +87,4 @@ fn check(folder: &Path, cases: &[Case], references: &[Reference]) -> Any<()> {
     } else {
         Err("results/accuracy/runs.csv is not what the code makes".into())
     }
-}
-
-/// The scenes as plain numbers for other programs.
-fn scenes_json(cases: &[Case]) -> Result<String, serde_json::Error> {
-    let list: Vec<_> = cases
-        .iter()
-        .map(|case| {
-            let (p, f) = (&case.scene.primary, &case.scene.forcing);
-            let mut object = serde_json::json!({
-                "scene": case.name, "T": case.to,
-                "m1": p.mass.get(), "c1": p.damping.get(), "k1": p.stiffness.get(),
-                "P": f.amplitude().map_or(0.0, |(_, amplitude)| amplitude.get()), "omega": f.frequency.get(),
-            });
-            let numbers = match case.scene.damper.zip(system(&case.scene)) {
-                None => serde_json::json!({"m2": 1.0, "k2": 0.0, "c2": 0.0, "D": 1e6, "C": 1e6, "K1": 0.0, "K3": 0.0}),
-                Some((d, system)) => serde_json::json!({
-                    "m2": d.mass.get(), "k2": d.stiffness.get(), "c2": d.damping.get(),
-                    "D": d.rest_distance.get(), "C": d.clearance.get(),
-                    "K1": system.hertz(Side::Primary), "K3": system.hertz(Side::Obstacle),
-                    "lambda": system.regularised_contact(Side::Primary).lambda(),
-                    "restitution": system.restitution().or_else(|| {
-                        system.regularised_contact(Side::Primary).restoring().map(|law| law.restitution())
-                    }),
-                    "rigid": system.is_rigid(),
-                }),
-            };
-            if let (Some(all), serde_json::Value::Object(more)) = (object.as_object_mut(), numbers) {
-                all.extend(more);
-            }
-            object
-        })
-        .collect();
-    Ok(serde_json::to_string_pretty(&list)? + "\n")
 }

@@ -4,11 +4,13 @@
 use rayon::prelude::*;
 use retune_jobs::methods;
 use retune_lab::atlas::draw::{Row, VERDICTS};
+use retune_lab::atlas::others::{self, OTHERS};
 use retune_lab::atlas::{
     MOST_STEPS, REFERENCE, Verdict, WAYS, cell, difficulties, draw, energy, energy_cell, missed, objective,
     rigid, stable, truth,
 };
-use retune_lab::{Any, sealed};
+use retune_lab::scenes::in_json;
+use retune_lab::{Any, runs, sealed};
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
@@ -43,13 +45,23 @@ fn check(folder: &Path) -> Any<()> {
     }
 }
 
+/// Where CVODE finds the difficulties.
+const SCENES: &str = "target/difficulties.json";
+
 /// Writes all files.
 fn write(folder: &Path) -> Any<()> {
     fs::create_dir_all(folder)?;
-    let rows = rows()?;
-    fs::write(folder.join("atlas.csv"), atlas_csv(&rows)?)?;
-    draw::matrix(&folder.join("atlas.svg"), &rows)?;
-    let mut text = heading(&rows)?;
+    let (own, of_others) = rows()?;
+    let names = [WAYS.map(|way| way.name).to_vec(), OTHERS.each_ref().map(|other| other.name).to_vec()];
+    let titles = ["Where methods fail", "Where other people's integrators fail"];
+    for (((name, title), ways), rows) in
+        ["atlas", "others"].into_iter().zip(titles).zip(&names).zip([&own, &of_others])
+    {
+        fs::write(folder.join(format!("{name}.csv")), csv(ways, rows)?)?;
+        draw::matrix(&folder.join(format!("{name}.svg")), title, ways, rows)?;
+    }
+    let mut text = heading(&names[0], &own)?;
+    write!(text, "\n{OF_OTHERS}\n\n{}", totals(&names[1], &of_others)?)?;
     let chart = |name: &str| folder.join(format!("{name}.svg"));
     let [values, optima] = objective::tables(&chart("objective"))?;
     for (name, table, what) in [
@@ -83,29 +95,33 @@ fn seal(folder: &Path) -> Any<()> {
     sealed::seal(folder, &methods::STABILITY, plan, difficulties.iter().map(|difficulty| &difficulty.case))
 }
 
-/// Every difficulty with its cells; the energy over 1,000 impacts last.
-fn rows() -> Any<Vec<Row>> {
+/// Every difficulty with its cells under Retune's methods, the energy over 1,000 impacts last; and under other people's integrators.
+fn rows() -> Any<(Vec<Row>, Vec<Row>)> {
     let all = difficulties::all()?;
-    let row = |d: &difficulties::Difficulty| -> Result<Row, String> {
+    fs::write(SCENES, in_json(all.iter().map(|difficulty| &difficulty.case))?)?;
+    let cvode = runs::cvode(SCENES);
+    let row = |d: &difficulties::Difficulty| -> Result<(Row, Row), String> {
         let truth = truth(d)?;
-        Ok((d.group, d.case.name, WAYS.iter().map(|way| cell(way, &d.case, &truth)).collect()))
+        let own = WAYS.iter().map(|way| cell(way, &d.case, &truth)).collect();
+        let of_others = OTHERS.iter().map(|other| others::cell(other, &d.case, &truth, &cvode)).collect();
+        Ok(((d.group, d.case.name, own), (d.group, d.case.name, of_others)))
     };
-    let mut rows = all.par_iter().map(row).collect::<Result<Vec<_>, _>>()?;
+    let rows = all.par_iter().map(row).collect::<Result<Vec<_>, _>>()?;
+    let (mut own, of_others): (Vec<Row>, Vec<Row>) = rows.into_iter().unzip();
     let energy = WAYS.iter().map(energy_cell).collect();
-    rows.push(("long", "1,000 lossless impacts: the energy", energy));
-    Ok(rows)
+    own.push(("long", "1,000 lossless impacts: the energy", energy));
+    Ok((own, of_others))
 }
 
-fn atlas_csv(rows: &[Row]) -> Result<String, std::fmt::Error> {
+fn csv(ways: &[&str], rows: &[Row]) -> Result<String, std::fmt::Error> {
     let mut table =
         String::from("group,difficulty,method,verdict,error,impacts,expected_impacts,evaluations,cause\n");
     for (group, name, cells) in rows {
-        for (way, cell) in WAYS.iter().zip(cells) {
+        for (way, cell) in ways.iter().zip(cells) {
             writeln!(
                 table,
-                "{group},{},{},{},{:.2e},{},{},{},{}",
+                "{group},{},{way},{},{:.2e},{},{},{},{}",
                 name.replace(',', ";"),
-                way.name,
                 cell.verdict.name(),
                 cell.error,
                 cell.impacts[0],
@@ -118,30 +134,36 @@ fn atlas_csv(rows: &[Row]) -> Result<String, std::fmt::Error> {
     Ok(table)
 }
 
-fn heading(rows: &[Row]) -> Result<String, std::fmt::Error> {
+/// How often each method comes to each verdict.
+fn totals(ways: &[&str], rows: &[Row]) -> Result<String, std::fmt::Error> {
     let count = |j: usize, verdict| rows.iter().filter(|r| r.2[j].verdict == verdict).count();
+    let mut text = String::from(
+        "| method | works | miscounts | inaccurate | says it fails | fails silently |\n| --- | --- | --- | --- | --- | --- |\n",
+    );
+    for (j, way) in ways.iter().enumerate() {
+        let counts = VERDICTS.map(|verdict| count(j, verdict).to_string());
+        writeln!(text, "| {way} | {} |", counts.join(" | "))?;
+    }
+    Ok(text)
+}
+
+fn heading(ways: &[&str], rows: &[Row]) -> Result<String, std::fmt::Error> {
     let mut text = format!(
         "# Where methods fail\n\nWritten by `just lab stability`. Every method runs each difficulty as a careful user would, at rtol 1e-6 or steps of 1 ms; \
          `ode23s defaults` is MATLAB's rtol 1e-3, as in the paper. The error is the larger of the relative errors of E1max and of the final state, against the hybrid at \
          rtol 1e-12, which DOP853 confirms (a test). *Works*: at most {:e}, every impact counted. *Miscounts*: the motion is as right, but shallow impacts are missed or counted twice. *Inaccurate*: at most {:e}, and at most one impact, or one in ten, miscounted. \
          *Says it fails*: an error is returned. *Fails silently*: anything else. Below each error: the evaluations of right-hand side and Jacobian; of the hybrid, each step of its exact flight counts as one. \
-         Nothing here is a time: `just lab stability check` makes all of it again and compares it byte for byte.\n\n![atlas](atlas.svg)\n\n\
-         | method | works | miscounts | inaccurate | says it fails | fails silently |\n| --- | --- | --- | --- | --- | --- |\n",
+         Nothing here is a time: `just lab stability check` makes all of it again and compares it byte for byte.\n\n![atlas](atlas.svg)\n\n{}\n## Causes\n\n",
         retune_lab::atlas::WORKS,
-        retune_lab::atlas::INACCURATE
+        retune_lab::atlas::INACCURATE,
+        totals(ways, rows)?
     );
-    for (j, way) in WAYS.iter().enumerate() {
-        let counts = VERDICTS.map(|verdict| count(j, verdict).to_string());
-        writeln!(text, "| {} | {} |", way.name, counts.join(" | "))?;
-    }
-    text += "\n## Causes\n\n";
     for (_, name, cells) in rows {
-        for (way, cell) in WAYS.iter().zip(cells).filter(|(_, c)| c.verdict != Verdict::Works) {
+        for (way, cell) in ways.iter().zip(cells).filter(|(_, c)| c.verdict != Verdict::Works) {
             let error = if cell.error.is_nan() { String::new() } else { format!(" ({:.0e})", cell.error) };
             writeln!(
                 text,
-                "- **{name}**, {}: {}{error}. {}.",
-                way.name,
+                "- **{name}**, {way}: {}{error}. {}.",
                 cell.verdict.name(),
                 sentence(&cell.cause)
             )?;
@@ -156,6 +178,10 @@ fn sentence(cause: &str) -> String {
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
+const OF_OTHERS: &str = "## Other people's integrators\n\nThe same difficulties at rtol 1e-6: Radau5 of the crate differential-equations, BDF of diffsol, LSODA of ivp, each with contacts located \
+by its own root finding and with forces stepped over, and CVODE in C, which finds roots (it has no law of one restitution at every speed: *not run*). Located methods fail silently where the run begins on a wall, at a zero of \
+the event function, which root finding does not report. The largest E1 is sought in their dense output every 0.2 ms. Numbers and causes: [`others.csv`](others.csv).\n\n\
+![Where other people's integrators fail](others.svg)";
 const STABLE: &str = "## Largest stable step\n\nOn the eigenvalues of the scenes' flight, and of two contacts frozen at their deepest, from the growth of each \
 method's own step; theory is its stability function at those eigenvalues. The hybrid's flight is exact and has no limit, ode23s is L-stable and has none.";
 const ENERGY: &str = "## Energy over 1,000 lossless impacts\n\nWithout damping and force the mechanical energy is constant. The hybrid's change at rtol 1e-6, \

@@ -1,6 +1,8 @@
 //! The wrapped integrators of others find the motion: differences on the chart are theirs, not the wrapper's.
 #![cfg(feature = "integrators")]
 
+use retune_lab::atlas::others::{OTHERS, cell};
+use retune_lab::atlas::{difficulties, truth};
 use retune_lab::comparison;
 use retune_lab::peers::{PEERS, run};
 use retune_lab::reference::REFERENCE;
@@ -42,4 +44,25 @@ fn regress_committed_runs_are_made_again() {
         let reference = runs::run(case, &tight, false).expect("runs");
         assert_eq!(comparison::change(row, case, &reference), None);
     }
+}
+
+/// Cells of the committed atlas of the integrators that are built in, of every sixth difficulty.
+#[test]
+fn regress_cells_of_others_are_as_committed() {
+    let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../results/stability/others.csv");
+    let table = std::fs::read_to_string(table).expect("the committed atlas");
+    let mut seen = 0;
+    for difficulty in difficulties::all().expect("runs").iter().step_by(6) {
+        let truth = truth(difficulty).expect("runs");
+        for other in OTHERS.iter().filter(|other| !other.name.starts_with("CVODE")) {
+            let start = format!(",{},{},", difficulty.case.name.replace(',', ";"), other.name);
+            let line = table.lines().find(|line| line.contains(&start)).expect("a cell");
+            let found = cell(other, &difficulty.case, &truth, "");
+            let fields: Vec<&str> = line.split(',').collect();
+            assert_eq!(fields[3], found.verdict.name(), "{start}");
+            assert_eq!(fields[7], found.evaluations.to_string(), "{start}");
+            seen += 1;
+        }
+    }
+    assert!(seen == 30, "{seen}");
 }

@@ -57,6 +57,22 @@ struct Bounds<'a> {
 }
 
 impl RegularisedContact {
+    /// Bounds between two states `h` (s/√m) apart; `None` if the piece is too long for the proof.
+    pub fn change(&self, h: f64, ends: [&RegularisedState; 2]) -> Option<Change> {
+        if !self.overdamped {
+            return self.change_by_rates(h, ends);
+        }
+        let bounds = self.bounds_if_following(h, ends)?;
+        let Series { growth, a1, rate, .. } = self.series::<2, true>(bounds);
+        let within = |[most, slope]: [f64; 2]| [most, 0.5 * h * slope];
+        Some(Change {
+            states: growth.map(within),
+            rates: [growth[1], a1, growth[3], rate].map(within),
+            root: within([bounds.state[0], 0.5 * bounds.state[1]]),
+            forces: None,
+        })
+    }
+
     /// Bounds on the Taylor coefficients in `θ` anywhere on a piece of the contact of length `h` (s/√m) that goes so far from the states at its
     /// ends; infinite if the piece is too long for the proof.
     ///

@@ -1,14 +1,15 @@
 //! How far a contact may go between two states: bounds that hold where the series of a loss has none.
 
-use super::{Growth, RegularisedContact, RegularisedState, Series, Stages};
+use super::stages::Stages;
+use crate::regularised::{RegularisedContact, RegularisedState};
 
 /// Bounds between two states, each the most and how far it may be from what it is at the nearer of the two.
 #[derive(Clone, Copy, Debug)]
 pub struct Change {
-    /// Of the four numbers of [`Growth`], m and m/s.
-    pub states: Growth<2>,
+    /// Of the four numbers of [`Growth`](super::Growth), m and m/s.
+    pub states: [[f64; 2]; 4],
     /// Of their rates in time, m/s and m/s².
-    pub rates: Growth<2>,
+    pub rates: [[f64; 2]; 4],
     /// Of `q = dt/dθ`, √m.
     pub root: [f64; 2],
     /// Of the forces; `None` where the speed into the wall follows them, since they cancel then.
@@ -36,24 +37,13 @@ struct End {
 }
 
 impl RegularisedContact {
-    /// Bounds between two states `h` (s/√m) apart; `None` if the piece is too long for the proof.
+    /// [`Self::change`] where the speed does not follow the forces.
     ///
     /// As long as no number has gone farther from the nearer state than a guess, no rate differs by more from the rate there than follows from the
     /// guess; the proof holds if these rates do not lead beyond the guess in `h/2`. The factor of a loss is a function of `q` and `w`, monotone in
     /// both where `w` has one sign, so that its range follows from corners: no slope of it is asked for, which has no bound where `v` vanishes.
-    pub fn change(&self, h: f64, [from, to]: [&RegularisedState; 2]) -> Option<Change> {
-        if self.overdamped {
-            let bounds = self.bounds_if_following(h, [from, to])?;
-            let Series { growth, a1, rate, .. } = self.series::<2, true>(bounds);
-            let within = |[most, slope]: [f64; 2]| [most, 0.5 * h * slope];
-            return Some(Change {
-                states: growth.map(within),
-                rates: [growth[1], a1, growth[3], rate].map(within),
-                root: within([bounds.state[0], 0.5 * bounds.state[1]]),
-                forces: None,
-            });
-        }
-        let ends = [from, to].map(|y| {
+    pub(super) fn change_by_rates(&self, h: f64, ends: [&RegularisedState; 2]) -> Option<Change> {
+        let ends = ends.map(|y| {
             let contact = self.contact_over_stiffness(y);
             let [rate, a1] = self.accelerations_by(contact, y);
             End { y: *y, contact, rates: [a1, rate] }

@@ -1,6 +1,5 @@
 //! The rate of a quantity in flight, bounded by the four numbers that a motion in contact consists of.
 
-use super::times;
 use crate::system::LinearSystem;
 
 /// The rate at which a quantity changes in flight, as a polynomial in the numbers of `retune_model::Growth` with every coefficient by its size:
@@ -73,10 +72,10 @@ impl<const N: usize> SlopeInFlight<N> {
     /// How far it may be from what it is where the numbers are no farther than `of` away, and the force no farther than a share `turn` of its
     /// bound. Numbers at both places are at most `most`.
     pub fn within(&self, most: &[f64; N], of: &[f64; N], turn: f64) -> f64 {
-        let mut sum = times(self.constant, turn);
+        let mut sum = self.constant * turn;
         for i in 0..N {
             let by = (0..N).map(|j| 2.0 * self.square[i][j] * most[j]).sum::<f64>();
-            sum += times(self.linear[i] + by, of[i]) + times(self.driven[i] * turn, most[i]);
+            sum += (self.linear[i] + by) * of[i] + self.driven[i] * turn * most[i];
         }
         sum
     }

@@ -1,0 +1,76 @@
+//! The same difficulties under other people's integrators.
+
+use super::{Cell, Truth, Verdict, judged, why_by_tolerance};
+use crate::runs::{self, Row};
+use crate::scenes::Case;
+use crate::{comparison, system};
+use retune_solver::Contacts;
+
+/// A column: name, program (without its version), method, and how it meets contacts.
+pub struct Other {
+    pub name: &'static str,
+    program: &'static str,
+    method: &'static str,
+    contacts: Contacts,
+}
+
+/// The tolerance of all.
+const RTOL: f64 = 1e-6;
+
+/// Implicit methods, of two families each with contacts located and stepped over; CVODE locates them as roots.
+pub const OTHERS: [Other; 8] = {
+    const fn other(
+        name: &'static str,
+        program: &'static str,
+        method: &'static str,
+        contacts: Contacts,
+    ) -> Other {
+        Other { name, program, method, contacts }
+    }
+    use Contacts::{Located, Stepped};
+    [
+        other("Radau5 located", "differential-equations", "Radau5", Located),
+        other("Radau5 stepped", "differential-equations", "Radau5", Stepped),
+        other("diffsol BDF located", "diffsol", "BDF", Located),
+        other("diffsol BDF stepped", "diffsol", "BDF", Stepped),
+        other("LSODA located", "ivp", "LSODA", Located),
+        other("LSODA stepped", "ivp", "LSODA", Stepped),
+        other("CVODE BDF located", "SUNDIALS", "BDF", Located),
+        other("CVODE Adams located", "SUNDIALS", "Adams", Located),
+    ]
+};
+
+/// A cell; `table` holds the runs of CVODE, which are left out where it is empty.
+pub fn cell(other: &Other, case: &Case, truth: &Truth, table: &str) -> Cell {
+    let contacts = if other.contacts == Contacts::Located { "located" } else { "stepped" };
+    let run = match comparison::program(other.program) {
+        Some(program) => comparison::attempt(case, (program, other.method, contacts), RTOL, false),
+        None => {
+            let is_own = |row: &Row| {
+                row.program.starts_with(other.program) && row.method == other.method && row.is_at(RTOL)
+            };
+            match runs::of_table(table, case, &truth.found).into_iter().find(is_own) {
+                Some(row) => row.found,
+                None => return not_run(truth),
+            }
+        }
+    };
+    let begins_on_a_wall = || {
+        let system = system(&case.scene)?;
+        system.indentation(&system.rest()).contains(&0.0).then(|| {
+            "the run begins on a wall, at a zero of the event function, which root finding does not report"
+                .to_owned()
+        })
+    };
+    let why = match other.contacts {
+        Contacts::Located => begins_on_a_wall(),
+        Contacts::Stepped => None,
+    };
+    judged(run, case, truth, &why.unwrap_or_else(|| why_by_tolerance(other.contacts, RTOL, truth)))
+}
+
+fn not_run(truth: &Truth) -> Cell {
+    let cause = "its right-hand side has no such contact".to_owned();
+    let impacts = [0, truth.found.impacts];
+    Cell { verdict: Verdict::NotRun, error: f64::NAN, impacts, evaluations: 0, cause }
+}
