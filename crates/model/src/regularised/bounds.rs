@@ -60,7 +60,8 @@ impl RegularisedContact {
     /// Bounds between two states `h` (s/√m) apart; `None` if the piece is too long for the proof.
     pub fn change(&self, h: f64, ends: [&RegularisedState; 2]) -> Option<Change> {
         if !self.overdamped {
-            return self.change_by_rates(h, ends);
+            let ends = ends.map(|y| self.end(y));
+            return self.change_by_rates(h, &ends).or_else(|| self.change_by_energy(h, &ends));
         }
         let bounds = self.bounds_if_following(h, ends)?;
         let Series { growth, a1, rate, .. } = self.series::<2, true>(bounds);
@@ -73,38 +74,26 @@ impl RegularisedContact {
         })
     }
 
-    /// Bounds on the Taylor coefficients in `θ` anywhere on a piece of the contact of length `h` (s/√m) that goes so far from the states at its
-    /// ends; infinite if the piece is too long for the proof.
-    ///
-    /// A box that holds both ends, and that no motion can leave within `h/2` of either, holds the piece (Picard and Lindelöf). A longer piece has
-    /// a box by the energy of the relative motion. In the box each coefficient follows from those before it by the equations, with all terms
-    /// taken as positive.
-    pub fn growth(&self, h: f64, ends: [&RegularisedState; 2], change: &Option<Change>) -> Growth<ORDERS> {
-        let bounds = self.bounds_on(h, ends, change);
-        bounds.map_or([[f64::INFINITY; ORDERS]; 4], |bounds| self.series::<ORDERS, false>(bounds).growth)
+    /// Bounds on the Taylor coefficients in `θ` anywhere on a piece of the contact that goes so far from the states at its ends; infinite if it is
+    /// too long for the proof. In the box about them each coefficient follows from those before it by the equations, with all terms taken as
+    /// positive.
+    pub fn growth(&self, ends: [&RegularisedState; 2], change: &Option<Change>) -> Growth<ORDERS> {
+        let series = |change| self.series::<ORDERS, false>(self.bounds_within(change, ends)).growth;
+        change.as_ref().map_or([[f64::INFINITY; ORDERS]; 4], series)
     }
 
     /// [`Self::growth`], and the same of the rates of its four numbers in *time*: of `v1`, `a1`, `w` and `dw/dt`.
     pub fn growth_of_rates(
         &self,
-        h: f64,
         ends: [&RegularisedState; 2],
         change: &Option<Change>,
     ) -> [Growth<ORDERS>; 2] {
-        let Some(bounds) = self.bounds_on(h, ends, change) else {
+        let Some(change) = change else {
             return [[[f64::INFINITY; ORDERS]; 4]; 2];
         };
-        let Series { growth, a1, rate, .. } = self.series::<ORDERS, true>(bounds);
+        let Series { growth, a1, rate, .. } = self.series::<ORDERS, true>(self.bounds_within(change, ends));
         let [_, v1, _, w] = growth;
         [growth, [v1, a1, w, rate]]
-    }
-
-    /// Bounds on a piece, by whichever proof holds; `None` if it is too long for both.
-    fn bounds_on(&self, h: f64, ends: [&RegularisedState; 2], change: &Option<Change>) -> Option<Bounds<'_>> {
-        match change {
-            Some(change) => Some(self.bounds_within(change, ends)),
-            None => self.bounds_by_energy(h, ends),
-        }
     }
 
     /// Bounds that follow from how far the piece goes from the states at its ends.
@@ -113,19 +102,12 @@ impl RegularisedContact {
         let [_, [a1, _], _, [rate, _]] = change.rates;
         let [q, of_q] = change.root;
         let shallowest = (from[0].min(to[0]) - of_q).max(0.0);
-        let speeds = [from[1].min(to[1]) - of_w, from[1].max(to[1]) + of_w];
+        let speeds = [(from[1].min(to[1]) - of_w).max(-w), (from[1].max(to[1]) + of_w).min(w)];
         let stages = self
             .restoring
             .as_deref()
             .map(|law| Stages::between(law, [shallowest, q].map(|q| self.half_square(q)), speeds));
         Bounds { state: [q, w, x1, v1], shallowest, rates: [a1, rate], force: self.most_force(), stages }
-    }
-
-    /// The sums of the sizes of all terms of `a1` and of `dw/dt`, m/s², of bounds on `[q, w, x1, v1]` and on what the force adds to `a1`.
-    fn sizes_of_rates(&self, excitation: f64, &[q, w, x1, v1]: &[f64; 4]) -> [f64; 2] {
-        let (stretch, contact) = (q * q + self.stretch.abs(), q * q * q * self.most(w));
-        let outside = excitation + self.primary[1] * v1 + self.primary[2] * x1;
-        [0, 1].map(|i| outside + self.hertz[i] * contact + self.dashpot[i] * w + self.spring[i] * stretch)
     }
 
     /// A bound on the force, N.
@@ -164,60 +146,6 @@ impl RegularisedContact {
             farther = by;
             for i in 0..4 {
                 bounds.state[i] = bounds.state[i].max(1.05 * reach[i]);
-            }
-        }
-        None
-    }
-
-    /// Bounds on a piece in which the damper swings against its spring and the wall, however far it swings; `None` if the structure moves too
-    /// much for the proof, or where one restitution holds at every speed.
-    ///
-    /// With `U` the energy of both springs over the effective mass, `a` the acceleration that the rest of the structure's forces give the
-    /// damper into the wall, and `a0` that at the start, `ε² = w² + 2 (U(z) - a0 z - least)` changes by `dε/dt <= |a - a0|`, since dashpot and losses only
-    /// take from it. `U` is convex, and no softer than the spring, so that at the start `ε² <= w² + (U' - a0)² / U''` with the least `U''` on the way to
-    /// where `U' = a0`; and later `|w| <= ε`, `|U' - a0| <= √U'' ε` with the greatest, and `z` is at most `(ε0 + ε) / √spring` from where it was.
-    fn bounds_by_energy(&self, h: f64, [from, to]: [&RegularisedState; 2]) -> Option<Bounds<'_>> {
-        if self.restoring.is_some() || self.overdamped {
-            return None;
-        }
-        let [q0, w0, ..] = *from;
-        let (z0, spring, kappa) = (q0 * q0, self.spring[1], self.law[0] * self.hertz[1]);
-        let lost = |q: f64, w: f64| (self.dashpot[1] + self.hertz[1] * self.law[1] * q.powi(3)) * w;
-        let pushed = -(self.acceleration(from) + lost(q0, w0)); // U' - a0
-        let stiffness = |q: f64| spring + 1.5 * kappa * q; // U'' at z = q²
-        let (here, halfway) = (stiffness(q0), stiffness(0.5 * q0));
-        let least = match pushed {
-            _ if pushed <= 0.0 => here,
-            _ if pushed <= 0.75 * z0 * halfway => halfway,
-            _ => spring,
-        };
-        let begin = (w0 * w0 + pushed * pushed / least).sqrt();
-        let deepest = z0 + (-pushed / here).max(0.0); // of where U' = a0
-        let force = self.most_force();
-        let turn = self.primary[0] * if self.is_linear() { self.force[1] } else { self.omega * force };
-        let ends: [f64; 4] = std::array::from_fn(|i| from[i].abs().max(to[i].abs()));
-        let mut state = ends;
-        for _ in 0..8 {
-            let [q, w, _, v1] = state;
-            let seconds = h * q;
-            let [a1, _] = self.sizes_of_rates(self.primary[0] * force, &state);
-            let change = seconds * (self.primary[1] * a1 + self.primary[2] * v1 + self.felt.abs() * turn);
-            let energy = begin + 0.5 * seconds * change;
-            let way = (seconds * energy).min((begin + energy) / spring.sqrt());
-            let reach = [
-                (z0 + way).sqrt().max(ends[0]),
-                energy.max(ends[1]),
-                ends[2] + 0.5 * seconds * v1,
-                ends[3] + 0.5 * seconds * a1,
-            ];
-            if (0..4).all(|i| reach[i] <= state[i]) {
-                let stiffest = stiffness(q.max(deepest.sqrt()));
-                let rate = stiffest.sqrt() * energy + change + lost(q, w);
-                let rates = [f64::INFINITY, rate];
-                return Some(Bounds { state, shallowest: 0.0, rates, force, stages: None });
-            }
-            for i in 0..4 {
-                state[i] = state[i].max(1.05 * reach[i]);
             }
         }
         None

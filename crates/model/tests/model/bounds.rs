@@ -6,7 +6,7 @@ use retune_testkit::scenes::{LOSSY, Numbers, ROW1, SSVI, Spread, TWO_SIDED, adva
 const T: f64 = 1.21;
 
 fn growth(equations: &RegularisedContact, h: f64, ends: [&RegularisedState; 2]) -> Growth<ORDERS> {
-    equations.growth(h, ends, &equations.change(h, ends))
+    equations.growth(ends, &equations.change(h, ends))
 }
 
 fn growth_of_rates(
@@ -14,7 +14,7 @@ fn growth_of_rates(
     h: f64,
     ends: [&RegularisedState; 2],
 ) -> [Growth<ORDERS>; 2] {
-    equations.growth_of_rates(h, ends, &equations.change(h, ends))
+    equations.growth_of_rates(ends, &equations.change(h, ends))
 }
 
 /// Terms 0 to 6 of a series.
@@ -267,7 +267,7 @@ fn invariant_no_long_piece_of_a_held_contact_leaves_its_bounds() {
             changed += 1;
             near += u32::from(stays_within(&equations, change, &states));
         }
-        let [bounds, rates] = equations.growth_of_rates(h, ends, &change);
+        let [bounds, rates] = equations.growth_of_rates(ends, &change);
         if !bounds.as_flattened().iter().all(|bound| bound.is_finite()) {
             continue;
         }

@@ -129,9 +129,9 @@ impl Piece<'_> {
     fn growth(&self, form: &Form<4>, ends: [&Knot<4>; 2], h: f64) -> [Growth<ORDERS>; 2] {
         let (states, change) = (ends.map(|knot| self.state(knot)), self.change(ends, h));
         if form.is_rated() {
-            self.equations.growth_of_rates(h, states.each_ref(), &change)
+            self.equations.growth_of_rates(states.each_ref(), &change)
         } else {
-            [self.equations.growth(h, states.each_ref(), &change), [[0.0; ORDERS]; 4]]
+            [self.equations.growth(states.each_ref(), &change), [[0.0; ORDERS]; 4]]
         }
     }
 
