@@ -70,6 +70,7 @@ fn exact_scaled_and_coarser_samples_are_views_of_one_table() {
         let coarser = reversed.every_second().expect("a record");
         let expected = own(&[times[0], times[2], times[4]], &[-3.0, -12.0, -21.0]);
         assert!(std::ptr::eq(coarser.table, samples.table));
+        assert!(reversed != samples && coarser != reversed, "views of one table are not the same samples");
         assert_eq!((coarser, coarser.bounds(), coarser.len()), (expected, expected.bounds(), 3));
         for t in [0.0, 0.5, 0.6, 0.8, 1.0, 1.1, 1.5, 2.0] {
             assert_eq!(coarser.stretch(t), expected.stretch(t), "{t}");
