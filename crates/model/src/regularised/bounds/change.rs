@@ -37,7 +37,7 @@ pub(super) struct End {
 }
 
 /// How far a piece goes from the nearer state, at most.
-struct Go {
+struct Excursion {
     /// Half of its duration, s.
     half: f64,
     /// Of `[q, w, x1, v1]`.
@@ -85,13 +85,13 @@ impl RegularisedContact {
                 self.contact_within(end, [q - of_q, q + of_q], [w - of_w, w + of_w])
             };
             let contact = ends.iter().map(of_contact).fold(0.0, greater);
-            let go = Go { half, numbers: within, stretch: (2.0 * q + of_q) * of_q, contact };
-            let [of_a1, of_rate] = self.of_rates(&go);
+            let excursion = Excursion { half, numbers: within, stretch: (2.0 * q + of_q) * of_q, contact };
+            let [of_a1, of_rate] = self.of_rates(&excursion);
             let reach =
                 [0.25 * h * (w + of_w), half * (rate + of_rate), half * (v1 + of_v1), half * (a1 + of_a1)];
             if (0..4).all(|i| reach[i] <= within[i] && within[i].is_finite()) {
                 let most = [q + of_q, w + of_w, x1 + of_x1, v1 + of_v1];
-                return Some(self.gone(ends, &go, most, [f64::INFINITY; 2]));
+                return Some(self.change_of(ends, &excursion, most, [f64::INFINITY; 2]));
             }
             for i in 0..4 {
                 within[i] = within[i].max(1.05 * reach[i]);
@@ -140,7 +140,7 @@ impl RegularisedContact {
                 let depths = [(z0 - way).max(0.0).sqrt().min(q0).min(ends[1].y[0]), q];
                 let of_q = ends.iter().map(|end| (q - end.y[0]).max(end.y[0] - depths[0])).fold(0.0, greater);
                 let of_contact = |end: &End| self.contact_within(end, depths, [-w, w]);
-                let go = Go {
+                let excursion = Excursion {
                     half: 0.5 * seconds,
                     numbers: [of_q, w + at_ends[1], 0.5 * seconds * v1, 0.5 * seconds * a1],
                     stretch: way + (ends[1].y[0].powi(2) - z0).abs(),
@@ -150,7 +150,7 @@ impl RegularisedContact {
                 let loss = (greatest - self.law[0]).max(self.law[0] - least) * q.powi(3);
                 let lost = self.dashpot[1] * w + self.hertz[1] * loss;
                 let rate = stiffness(q.max(deepest.sqrt())).sqrt() * energy + change + lost;
-                return Some(self.gone(ends, &go, most, [a1, rate]));
+                return Some(self.change_of(ends, &excursion, most, [a1, rate]));
             }
             for i in 0..4 {
                 most[i] = most[i].max(1.05 * reach[i]);
@@ -160,7 +160,10 @@ impl RegularisedContact {
     }
 
     /// How far `a1` and `dw/dt` are from what they are at the nearer state, at most.
-    fn of_rates(&self, &Go { half, numbers: [_, of_w, of_x1, of_v1], stretch, contact }: &Go) -> [f64; 2] {
+    fn of_rates(
+        &self,
+        &Excursion { half, numbers: [_, of_w, of_x1, of_v1], stretch, contact }: &Excursion,
+    ) -> [f64; 2] {
         let outside = self.primary[1] * of_v1 + self.primary[2] * of_x1;
         [(0, 1.0), (1, self.felt.abs())].map(|(i, felt)| {
             felt * self.primary[0] * self.most_turn() * half
@@ -172,10 +175,16 @@ impl RegularisedContact {
     }
 
     /// The change of a piece that goes so far, where its numbers `[q, w, x1, v1]` and its rates are at most these.
-    fn gone(&self, ends: &[End; 2], go: &Go, [q, w, x1, v1]: [f64; 4], rates: [f64; 2]) -> Change {
-        let Go { half, numbers: [of_q, of_w, of_x1, of_v1], stretch, contact } = *go;
+    fn change_of(
+        &self,
+        ends: &[End; 2],
+        excursion: &Excursion,
+        [q, w, x1, v1]: [f64; 4],
+        rates: [f64; 2],
+    ) -> Change {
+        let Excursion { half, numbers: [of_q, of_w, of_x1, of_v1], stretch, contact } = *excursion;
         let (_, at_ends) = largest(ends);
-        let of_rates = self.of_rates(go);
+        let of_rates = self.of_rates(excursion);
         let [a1, rate] = std::array::from_fn(|i| [rates[i].min(at_ends[i] + of_rates[i]), of_rates[i]]);
         let with = |at: &dyn Fn(&End) -> f64, of: f64| [at(&ends[0]).abs().max(at(&ends[1]).abs()) + of, of];
         let turned = self.most_turn() * half;
