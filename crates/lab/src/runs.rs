@@ -277,17 +277,10 @@ pub fn way(settings: &Settings) -> &'static str {
 /// CVODE on the scenes of a file, compiled by the recipes from C.
 const CVODE: &str = "target/cvode";
 
-/// The lines that it writes; none where it has not been built.
-#[allow(clippy::print_stderr, reason = "of the programs of this crate")]
-pub fn cvode(scenes: &str) -> String {
-    let run = Command::new(CVODE).arg(scenes).stderr(Stdio::null()).output();
-    run.map_or_else(
-        |_| {
-            eprintln!("CVODE is left out: there is no {CVODE}");
-            String::new()
-        },
-        |output| String::from_utf8_lossy(&output.stdout).into_owned(),
-    )
+/// The lines that it writes; `None` where it has not been built.
+pub fn cvode(scenes: &str) -> Option<String> {
+    let output = Command::new(CVODE).arg(scenes).stderr(Stdio::null()).output().ok()?;
+    Some(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
 /// Tables of the runs of interpreted programs, made by `just lab accuracy-external`.

@@ -40,37 +40,35 @@ pub const OTHERS: [Other; 8] = {
     ]
 };
 
-/// A cell; `table` holds the runs of CVODE, which are left out where it is empty.
-pub fn cell(other: &Other, case: &Case, truth: &Truth, table: &str) -> Cell {
-    let contacts = if other.contacts == Contacts::Located { "located" } else { "stepped" };
+/// A cell; `cvode` holds the runs of CVODE, if it is built.
+pub fn cell(other: &Other, case: &Case, truth: &Truth, cvode: Option<&str>) -> Cell {
+    let located = other.contacts == Contacts::Located;
     let run = match comparison::program(other.program) {
-        Some(program) => comparison::attempt(case, (program, other.method, contacts), RTOL, false),
+        Some(program) => {
+            let contacts = if located { "located" } else { "stepped" };
+            comparison::attempt(case, (program, other.method, contacts), RTOL, false)
+        }
         None => {
-            let is_own = |row: &Row| {
-                row.program.starts_with(other.program) && row.method == other.method && row.is_at(RTOL)
-            };
+            let Some(table) = cvode else { return not_run(truth, "it is not built") };
+            let is_own = |row: &Row| row.method == other.method && row.is_at(RTOL);
             match runs::of_table(table, case, &truth.found).into_iter().find(is_own) {
                 Some(row) => row.found,
-                None => return not_run(truth),
+                None => return not_run(truth, "its right-hand side has no such contact"),
             }
         }
     };
-    let begins_on_a_wall = || {
-        let system = system(&case.scene)?;
-        system.indentation(&system.rest()).contains(&0.0).then(|| {
-            "the run begins on a wall, at a zero of the event function, which root finding does not report"
-                .to_owned()
-        })
+    let on_a_wall =
+        || system(&case.scene).is_some_and(|system| system.indentation(&system.rest()).contains(&0.0));
+    let why = if located && on_a_wall() {
+        "the run begins on a wall, at a zero of the event function, which root finding does not report"
+            .to_owned()
+    } else {
+        why_by_tolerance(other.contacts, RTOL, truth)
     };
-    let why = match other.contacts {
-        Contacts::Located => begins_on_a_wall(),
-        Contacts::Stepped => None,
-    };
-    judged(run, case, truth, &why.unwrap_or_else(|| why_by_tolerance(other.contacts, RTOL, truth)))
+    judged(run, case, truth, &why)
 }
 
-fn not_run(truth: &Truth) -> Cell {
-    let cause = "its right-hand side has no such contact".to_owned();
+fn not_run(truth: &Truth, why: &str) -> Cell {
     let impacts = [0, truth.found.impacts];
-    Cell { verdict: Verdict::NotRun, error: f64::NAN, impacts, evaluations: 0, cause }
+    Cell { verdict: Verdict::NotRun, error: f64::NAN, impacts, evaluations: 0, cause: why.to_owned() }
 }

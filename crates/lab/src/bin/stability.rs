@@ -103,7 +103,8 @@ fn rows() -> Any<(Vec<Row>, Vec<Row>)> {
     let row = |d: &difficulties::Difficulty| -> Result<(Row, Row), String> {
         let truth = truth(d)?;
         let own = WAYS.iter().map(|way| cell(way, &d.case, &truth)).collect();
-        let of_others = OTHERS.iter().map(|other| others::cell(other, &d.case, &truth, &cvode)).collect();
+        let of_others =
+            OTHERS.iter().map(|other| others::cell(other, &d.case, &truth, cvode.as_deref())).collect();
         Ok(((d.group, d.case.name, own), (d.group, d.case.name, of_others)))
     };
     let rows = all.par_iter().map(row).collect::<Result<Vec<_>, _>>()?;

@@ -57,7 +57,7 @@ fn regress_cells_of_others_are_as_committed() {
         for other in OTHERS.iter().filter(|other| !other.name.starts_with("CVODE")) {
             let start = format!(",{},{},", difficulty.case.name.replace(',', ";"), other.name);
             let line = table.lines().find(|line| line.contains(&start)).expect("a cell");
-            let found = cell(other, &difficulty.case, &truth, "");
+            let found = cell(other, &difficulty.case, &truth, None);
             let fields: Vec<&str> = line.split(',').collect();
             assert_eq!(fields[3], found.verdict.name(), "{start}");
             assert_eq!(fields[7], found.evaluations.to_string(), "{start}");

@@ -8,6 +8,7 @@ mod derivatives;
 mod energies;
 mod histories;
 mod mode;
+mod overdamped;
 mod regularised;
 mod stationary;
 mod steady;

@@ -23,7 +23,7 @@ pub struct Forces {
     pub contact: [f64; 2],
     /// By how much the external force may differ from that at the nearer state, as a share of the bound on it.
     pub turn: f64,
-    /// The rate of `[x1, v1, x2, v2]` by the contact's force over its stiffness.
+    /// The rate of `[x1, v1, x2, v2]` over that contact's force: of both speeds, m^-0.5 s^-2.
     pub kick: [f64; 4],
 }
 

@@ -82,7 +82,7 @@ impl<const K: usize> StageSeries<K> {
         }
     }
 
-    /// Term `k + 1` of each, from term `k` of q, of `κ q³`, and of the acceleration by all but the contact, `beside`.
+    /// Term `k + 1` of each, from term `k` of q, of `κ q³`, of the acceleration by all but the contact, `beside`, and of dw/dt, `rate`.
     pub fn extend(&mut self, k: usize, q: &[f64; K], hertz: f64, [beside, rate]: [f64; 2]) {
         let next = 1.0 / (k + 1) as f64;
         let Self { chi, h, slowness, f, g, by_d, more } = self;
