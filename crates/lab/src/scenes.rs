@@ -1,4 +1,4 @@
-//! The scenes of the comparison: the paper's structure (Table 2) with eleven dampers.
+//! The scenes of the comparison: the paper's structure (Table 2) with twelve dampers.
 
 use crate::system;
 use retune_model::{Scene, Side};
@@ -31,7 +31,10 @@ pub fn critical_damping() -> f64 {
     2.0 * (SSVI.k2 * SSVI.m2).sqrt()
 }
 
-/// The scenes: six of the paper's contacts, three of contacts that lose energy, and two where the hybrid is at its worst.
+/// A spring presses the damper on its wall, 2 mm from where it rests, for half of a period: it chatters there until it stays, and leaves.
+pub const CHATTER: Numbers = Numbers { k2: 5e3, c2: 100.0, d: 0.002, c: 5.0, e: 0.5, ..SSVI };
+
+/// The scenes: six of the paper's contacts, three of contacts that lose energy, and three where a damper is held, creeps or chatters.
 pub fn cases() -> Vec<Case> {
     let near_critical = Numbers { c2: critical_damping(), ..SSVI };
     [
@@ -46,6 +49,7 @@ pub fn cases() -> Vec<Case> {
         ("rigid", "rigid walls, restitution 0.7", 20.0, Numbers { rigid: Some(0.7), ..SSVI }.scene()),
         ("held", "held by a stiff spring", 20.0, Numbers { k2: 1e6, d: 0.0, ..SSVI }.scene()),
         ("stiff-dashpot", "stiff dashpot", 5.0, Numbers { c2: 1e7, ..SSVI }.scene()),
+        ("chatter", "chatters, stays, leaves", 10.0, CHATTER.scene()),
     ]
     .map(|(name, label, to, scene)| Case { name, label, scene, to })
     .into()

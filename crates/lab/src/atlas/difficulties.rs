@@ -1,7 +1,7 @@
 //! The difficulties: scenes designed to make methods fail.
 
 use crate::Any;
-use crate::scenes::{Case, Numbers, SSVI, TMD, critical_damping, stiffer};
+use crate::scenes::{CHATTER, Case, Numbers, SSVI, TMD, critical_damping, stiffer};
 use retune_solver::observe::{RelativePosition, RunningMaximum};
 use retune_solver::{Hybrid, Motion, Phase};
 
@@ -86,9 +86,6 @@ pub fn all() -> Any<Vec<Difficulty>> {
 }
 
 const BARE: &str = "resonance without damping, bare";
-
-/// A spring presses the damper on its wall, 2 mm from where it rests, for half of a period: it chatters there until it stays, and leaves.
-const CHATTER: Numbers = Numbers { k2: 5e3, c2: 100.0, d: 0.002, c: 5.0, e: 0.5, ..SSVI };
 
 /// A heavy damper on a stiff structure: in one flight step of the hybrid, concave at both ends, E1 has two maxima with a minimum
 /// between; treating it as a step with one maximum lost 0.2 % of E1max. Found by adversarial search.

@@ -60,7 +60,7 @@ fn reference_other_programs_come_to_the_same_motion() {
         ("Octave", 1e-6, 6),
         ("SciPy", 1e-6, 10),
         ("SUNDIALS", 1e-9, 10),
-        ("ivp", 1e-6, 11),
+        ("ivp", 1e-6, 12),
         ("Moreau-Jean", 1e-4, 1),
     ] {
         let mut compared = 0;
