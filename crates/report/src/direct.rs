@@ -170,18 +170,16 @@ impl Grid {
         }
     }
 
-    /// All bits within a rectangle.
-    fn within(&self, rect: Rect) -> u32 {
-        let [columns, rows] = self.range(rect);
-        rows.flat_map(|row| &self.cells[row * self.columns..][columns.clone()])
-            .fold(0, |all, bits| all | bits)
+    /// The cell of a point, if it is in the frame.
+    fn cell(&self, (x, y): (f64, f64)) -> Option<usize> {
+        let [mut columns, mut rows] = self.range([x, y, x, y]);
+        Some(rows.next()? * self.columns + columns.next()?)
     }
 
     fn segment(&mut self, ends: [(f64, f64); 2], bits: u32) {
-        for (x, y) in along(ends) {
-            let [columns, rows] = self.range([x, y, x, y]);
-            if let (Some(column), Some(row)) = (columns.into_iter().next(), rows.into_iter().next()) {
-                self.cells[row * self.columns + column] |= bits;
+        for point in along(ends) {
+            if let Some(cell) = self.cell(point) {
+                self.cells[cell] |= bits;
             }
         }
     }
@@ -189,23 +187,25 @@ impl Grid {
     /// Whether a segment meets none of the bits but about its beginning.
     fn is_free(&self, ends: [(f64, f64); 2], bits: u32) -> bool {
         let beginning = |(x, y): (f64, f64)| (x - ends[0].0).hypot(y - ends[0].1) < 1.5 * CELL;
-        along(ends).filter(|point| !beginning(*point)).all(|(x, y)| self.within([x, y, x, y]) & bits == 0)
+        let is_free = |point| self.cell(point).is_none_or(|cell| self.cells[cell] & bits == 0);
+        along(ends).filter(|point| !beginning(*point)).all(is_free)
     }
 
     /// The best place of the name of a line: near to it, far from the others, rather on the right.
     fn place(&self, path: &[(f64, f64)], own: usize, (stroke, text): (Stroke, &str)) -> Option<Direct> {
-        let shapes = shapes(text);
-        let found = shapes.into_iter().map(|lines| self.place_lines(path, own, stroke, lines));
+        let counts = [Counts::new(self, !0), Counts::new(self, !(1 << own))];
+        let found = shapes(text).into_iter().map(|lines| self.place_lines(path, own, stroke, lines, &counts));
         found.flatten().min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, found)| found)
     }
 
-    /// As [`Self::place`], of a name that is broken into lines; with what it costs.
+    /// As [`Self::place`], of a name that is broken into lines, with what it costs. `counts` are those of all bits, and of all but its own.
     fn place_lines(
         &self,
         path: &[(f64, f64)],
         own: usize,
         stroke: Stroke,
         text: Vec<String>,
+        [all, foreign]: &[Counts<'_>; 2],
     ) -> Option<(f64, Direct)> {
         let width = text.iter().map(|line| SMALL * ems(line)).fold(0.0, f64::max);
         let height = SMALL + LINE * SMALL * (text.len() - 1) as f64;
@@ -214,7 +214,7 @@ impl Grid {
         let mut best: Option<(f64, Direct)> = None;
         for &(x, y) in path.iter().step_by(path.len().div_ceil(ALONG).max(1)) {
             // Where its line lies on another, a name would stand for both.
-            if self.within(around([x, y, x, y], 1.0)) & others != 0 {
+            if foreign.within(around([x, y, x, y], 1.0)) > 0 {
                 continue;
             }
             let across = x.clamp(left + SPACE + half.0, (right - SPACE - half.0).max(left + SPACE + half.0));
@@ -235,11 +235,11 @@ impl Grid {
                 let fits = rect[0] >= left + SPACE && rect[2] <= right - SPACE;
                 let fits = fits && rect[1] >= top + SPACE && rect[3] <= bottom - SPACE;
                 let leader = [(x, y), (x.clamp(rect[0], rect[2]), y.clamp(rect[1], rect[3]))];
-                if !fits || self.within(around(rect, 1.0)) != 0 || !self.is_free(leader, NAME) {
+                if !fits || all.within(around(rect, 1.0)) > 0 || !self.is_free(leader, NAME) {
                     continue;
                 }
                 let crosses = f64::from(u8::from(!self.is_free(leader, others)));
-                let crowded = |by: f64| f64::from(u8::from(self.within(around(rect, by)) & others != 0));
+                let crowded = |by: f64| f64::from(u8::from(foreign.within(around(rect, by)) > 0));
                 let crowded = 8.0 * crowded(4.0) + 4.0 * crowded(8.0);
                 let cost = away + 20.0 * crosses + crowded + 6.0 * (right - x) / (right - left);
                 if best.as_ref().is_none_or(|(least, _)| cost < *least) {
@@ -248,6 +248,40 @@ impl Grid {
             }
         }
         best
+    }
+}
+
+/// How many cells have any of some bits: for each corner of the grid, those above it and on its left, so that those in a rectangle are known at
+/// once from its four corners.
+struct Counts<'a> {
+    grid: &'a Grid,
+    before: Vec<u32>,
+}
+
+impl<'a> Counts<'a> {
+    fn new(grid: &'a Grid, bits: u32) -> Self {
+        let width = grid.columns + 1;
+        let mut before = vec![0; width];
+        for row in grid.cells.chunks_exact(grid.columns) {
+            let mut on_the_left = 0;
+            before.push(0);
+            for cell in row {
+                on_the_left += u32::from(cell & bits != 0);
+                before.push(on_the_left + before[before.len() - width]);
+            }
+        }
+        Self { grid, before }
+    }
+
+    fn within(&self, rect: Rect) -> u32 {
+        let [columns, rows] = self.grid.range(rect);
+        if columns.is_empty() || rows.is_empty() {
+            return 0;
+        }
+        let before = |column: usize, row: usize| self.before[row * (self.grid.columns + 1) + column];
+        let [left, right] =
+            [columns.start, columns.end].map(|column| (before(column, rows.start), before(column, rows.end)));
+        right.1 + left.0 - right.0 - left.1
     }
 }
 
