@@ -15,10 +15,10 @@ fn small() -> Desk {
     let desk = Desk::with_table2("table2.json", |study| study["window"] = json!({ "t0": 5, "T": 10 }));
     let mut plan = committed("paper.json");
     plan["k1"] = json!([3.00e4, 3.95e4, 5.00e4]);
-    plan["omega"] = json!({ "from": 4, "to": 9, "points": 31 });
+    plan["omega"] = json!({ "from": 4, "to": 9, "points": 11 });
     plan["k1_range"] = json!({ "from": 2.0e4, "to": 6.0e4, "points": 3 });
-    plan["ladder"] = json!([5, 9]);
-    plan["motions"] = json!({ "from": 0.998, "to": 1.002, "points": 4 });
+    plan["ladder"] = json!([5]);
+    plan["motions"] = json!({ "from": 0.998, "to": 1.002, "points": 2 });
     desk.write_json("paper.json", &plan);
     desk
 }
