@@ -1,20 +1,19 @@
 //! What moves the structure, over time: the curve under the motion.
 
 use crate::thin::{Thin, Thinning};
-use retune_model::{Course, Forcing, History, Of, Source};
+use retune_model::{Amplitude, Course, Forcing, History, Of, Source};
 use serde_json::{Value, json};
 
 /// What is drawn of a forcing: its words and its unit; none of a free decay.
 pub fn forced(forcing: &Forcing) -> Option<Value> {
     let (name, words, unit) = match forcing.source {
-        Source::Force(_) | Source::Imbalance(_) => ("f", "force on the structure", "N"),
-        Source::Base(_) => ("y", "displacement of the base", "m"),
-        Source::BaseAcceleration(_) => ("a0", "acceleration of the base", "m/s²"),
-        Source::Decay(_) => return None,
-        Source::History(History { of: Of::Force, .. }) => ("f", "force on the structure", "N"),
+        Source::Harmonic(Amplitude::Base, _) => ("y", "displacement of the base", "m"),
+        Source::Harmonic(of, _) if of.is_of_base() => ("a0", "acceleration of the base", "m/s²"),
         Source::History(History { of: Of::BaseAcceleration, .. }) => {
             ("a0", "acceleration of the base", "m/s²")
         }
+        Source::Harmonic(..) | Source::History(_) => ("f", "force on the structure", "N"),
+        Source::Decay(_) => return None,
     };
     Some(json!({ "name": name, "words": words, "unit": unit }))
 }

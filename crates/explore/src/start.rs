@@ -60,8 +60,8 @@ pub struct Control {
 /// The fields of a pulse and of a record.
 const GIVEN: [&str; 8] = ["pulse", "record", "of", "peak", "duration", "unit", "scale", "column"];
 
-/// The numbers that a page shows first, in its order; all others of the catalogue follow.
-const FIRST: [Parameter; 12] = [
+/// The numbers that a page shows first, in its order; the amplitudes and all others of the catalogue follow.
+const FIRST: [Parameter; 8] = [
     Parameter::Omega,
     Parameter::K2,
     Parameter::C2,
@@ -70,10 +70,6 @@ const FIRST: [Parameter; 12] = [
     Parameter::M2,
     Parameter::K1,
     Parameter::C1,
-    Parameter::P,
-    Parameter::Imbalance,
-    Parameter::Base,
-    Parameter::BaseAcceleration,
 ];
 
 /// The dampers that have a parameter.
@@ -278,8 +274,9 @@ impl Start {
                 dampers: dampers(parameter),
             })
         };
-        let others = Parameter::ALL.into_iter().filter(|parameter| !FIRST.contains(parameter));
-        FIRST.into_iter().chain(others).filter_map(control).collect()
+        let first = || FIRST.into_iter().chain(Parameter::AMPLITUDES);
+        let others = Parameter::ALL.into_iter().filter(|parameter| first().all(|one| one != *parameter));
+        first().chain(others).filter_map(control).collect()
     }
 
     /// The ends that the search of the study has.

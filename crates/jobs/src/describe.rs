@@ -113,11 +113,12 @@ fn steps(study: &Study) -> Option<String> {
 pub(crate) fn forced(forcing: &Forcing) -> String {
     let at = format!("at omega = {} rad/s", forcing.frequency.get());
     match forcing.source {
-        Source::Force(amplitude) => format!("forced by P = {} N {at}", amplitude.get()),
-        Source::Imbalance(imbalance) => format!("forced by an imbalance of {} kg·m {at}", imbalance.get()),
-        Source::Base(base) => format!("on a base that moves by {} m {at}", base.get()),
-        Source::BaseAcceleration(base) => {
-            format!("on a base that is accelerated by {} m/s² {at}", base.get())
+        Source::Harmonic(of, size) => {
+            let (size, symbol, unit) = (size.get(), of.parameter().symbol(), of.parameter().unit());
+            match of.is_of_base() {
+                true => format!("on {} {size} {unit} {at}", of.words()),
+                false => format!("forced by {symbol} = {size} {unit} {at}"),
+            }
         }
         Source::Decay(_) => "decaying freely".to_owned(),
         Source::History(history) => given(&history),

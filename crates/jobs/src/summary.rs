@@ -234,13 +234,10 @@ impl std::fmt::Display for Summary {
         }
         let Extreme { value, time } = self.response.structure.ground_force;
         writeln!(f, "ground      {value:<12.3} N at t = {time:.4} s, the largest force on the ground")?;
-        if let Some(share) = self.transmissibility() {
-            let by = match self.parameters.forcing.source {
-                Source::Imbalance(_) => "that force / (imbalance omega²)",
-                Source::Base(_) => "x1max / base",
-                Source::BaseAcceleration(_) => "x1max omega² / base_acceleration",
-                Source::Force(_) | Source::Decay(_) | Source::History(_) => "that force / P",
-            };
+        if let (Some(share), Source::Harmonic(of, _)) =
+            (self.transmissibility(), self.parameters.forcing.source)
+        {
+            let by = of.transmissibility();
             writeln!(f, "transmiss.  {share:<12.5} the transmissibility: {by}")?;
         }
         write!(f, "model       {model}")?;

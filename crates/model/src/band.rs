@@ -142,12 +142,11 @@ impl<'a> Search<'a> {
         seen: Seen<'a>,
     ) -> Self {
         let (force, power, weight) = match bare.source() {
-            Source::Force(amplitude) => (amplitude.get(), 0, None),
-            Source::Imbalance(imbalance) => (imbalance.get() * factors.unit, 2, None),
-            Source::Base(base) => (base.get(), 0, Some(ground(bare, factors.unit))),
-            Source::BaseAcceleration(acceleration) => {
-                (acceleration.get() / factors.unit, -2, Some(ground(bare, factors.unit)))
-            }
+            Source::Harmonic(of, size) => (
+                of.at(size.get(), factors.unit.sqrt()),
+                of.power(),
+                of.is_of_base().then(|| ground(bare, factors.unit)),
+            ),
             Source::Decay(_) | Source::History(_) => (0.0, 0, None),
         };
         let inertia = weight.is_some() && measure == Measure::GroundForce;

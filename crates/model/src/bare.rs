@@ -59,20 +59,13 @@ impl Bare {
     /// The amplitude of the force at the angular frequency `omega`, N, and by how much it leads, rad. A base that moves by `y` pushes
     /// the structure by `k1 y + c1 dy/dt`.
     fn amplitude_and_lead(&self, omega: f64) -> [f64; 2] {
-        match self.source {
-            Source::Force(amplitude) => [amplitude.get(), 0.0],
-            Source::Imbalance(imbalance) => [imbalance.get() * omega * omega, 0.0],
-            Source::Base(base) => self.pushed(base.get(), omega),
-            Source::BaseAcceleration(acceleration) => {
-                self.pushed(acceleration.get() / (omega * omega), omega)
-            }
-            Source::Decay(_) | Source::History(_) => [0.0; 2],
+        let Source::Harmonic(of, size) = self.source else { return [0.0; 2] };
+        let size = of.at(size.get(), omega);
+        if of.is_of_base() {
+            [size * self.k1.hypot(omega * self.c1), (omega * self.c1).atan2(self.k1)]
+        } else {
+            [size, 0.0]
         }
-    }
-
-    /// The amplitude (N) and the lead (rad) of the force of a base that moves by `size` (m).
-    fn pushed(&self, size: f64, omega: f64) -> [f64; 2] {
-        [size * self.k1.hypot(omega * self.c1), (omega * self.c1).atan2(self.k1)]
     }
 
     /// The force per unit of what is given in time: an acceleration a of the base is the force -m1 a in coordinates that move with it.

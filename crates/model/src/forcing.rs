@@ -5,6 +5,7 @@ mod in_file;
 mod start;
 
 use crate::NonNegative;
+use crate::amplitude::{Amplitude, by_power};
 use crate::history::{Course, History, Of};
 use crate::record::Record;
 use in_file::{InFile, Refused};
@@ -28,15 +29,8 @@ pub struct Forcing {
 /// The kinds of forcing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Source {
-    /// A force P cos ωt on the structure: P, N.
-    Force(NonNegative),
-    /// A rotating imbalance of the structure: m e, the mass (part of m1) times its distance from the axis, kg·m. It is the force
-    /// m e ω² cos ωt.
-    Imbalance(NonNegative),
-    /// A base that moves by Y cos ωt: Y, m. On the structure it acts as the force k1 y + c1 dy/dt.
-    Base(NonNegative),
-    /// A base that moves by Y cos ωt with Y = a / ω², so that its acceleration has the amplitude a at every frequency: a, m/s².
-    BaseAcceleration(NonNegative),
+    /// A harmonic: what its amplitude is of, and its size in the SI unit.
+    Harmonic(Amplitude, NonNegative),
     /// Nothing but a start away from rest.
     Decay(Start),
     /// A force, or an acceleration of the base, that is given in time.
@@ -46,12 +40,12 @@ pub enum Source {
 impl Source {
     /// Whether it has a frequency.
     pub const fn is_harmonic(&self) -> bool {
-        !matches!(self, Self::Decay(_) | Self::History(_))
+        matches!(self, Self::Harmonic(..))
     }
 
     /// Whether it is a base that moves in space, with a frequency.
     pub const fn is_moving_base(&self) -> bool {
-        matches!(self, Self::Base(_) | Self::BaseAcceleration(_))
+        matches!(self, Self::Harmonic(of, _) if of.is_of_base())
     }
 
     /// What is given in time, if anything is.
@@ -63,7 +57,7 @@ impl Source {
 impl Forcing {
     /// A force P cos ωt on the structure: P, N, and ω, rad/s.
     pub const fn force(amplitude: NonNegative, frequency: NonNegative) -> Self {
-        Self { source: Source::Force(amplitude), frequency, start: None }
+        Self { source: Source::Harmonic(Amplitude::Force, amplitude), frequency, start: None }
     }
 
     /// Whether it has no frequency: of a free decay, a pulse and a record. All there is of such a motion is in its run.
@@ -81,7 +75,7 @@ impl Forcing {
         match &self.source {
             Source::History(history) => history.course.end(),
             Source::Decay(_) => 0.0,
-            _ => f64::INFINITY,
+            Source::Harmonic(..) => f64::INFINITY,
         }
     }
 
@@ -113,13 +107,10 @@ impl Forcing {
     /// is given as (of an imbalance its force); 0 of a free decay.
     pub fn at(&self, t: f64) -> f64 {
         let omega = self.frequency.get();
-        let turn = (omega * t).cos();
         match &self.source {
-            Source::Force(force) => force.get() * turn,
-            Source::Imbalance(imbalance) => imbalance.get() * omega * omega * turn,
-            Source::Base(base) => base.get() * turn,
-            // The base moves by Y cos ωt with Y = a / ω².
-            Source::BaseAcceleration(base) => -base.get() * turn,
+            // A base of which the acceleration is given moves by Y cos ωt with Y = a / ω².
+            Source::Harmonic(Amplitude::BaseAcceleration, size) => -size.get() * (omega * t).cos(),
+            Source::Harmonic(of, size) => of.at(size.get(), omega) * (omega * t).cos(),
             Source::Decay(_) => 0.0,
             Source::History(history) => history.course.at(t),
         }
@@ -128,14 +119,9 @@ impl Forcing {
     /// The transmissibility of a motion with these largest values (m, N): the force on the ground over the amplitude of the force on
     /// the structure; on a moving base the displacement of the structure over that of the base. NaN or infinite where nothing moves it.
     pub fn transmissibility(&self, displacement: f64, ground_force: f64) -> f64 {
-        let omega = self.frequency.get();
-        match self.source {
-            Source::Force(force) => ground_force / force.get(),
-            Source::Imbalance(imbalance) => ground_force / (imbalance.get() * omega * omega),
-            Source::Base(base) => displacement / base.get(),
-            Source::BaseAcceleration(base) => displacement * omega * omega / base.get(),
-            Source::Decay(_) | Source::History(_) => f64::NAN,
-        }
+        let Source::Harmonic(of, size) = self.source else { return f64::NAN };
+        let response = if of.is_of_base() { displacement } else { ground_force };
+        by_power(response, self.frequency.get(), -of.power()) / size.get()
     }
 }
 
@@ -143,10 +129,11 @@ impl From<Forcing> for InFile {
     fn from(Forcing { source, frequency, start }: Forcing) -> Self {
         let none = Self { start, omega: Some(frequency), ..Self::default() };
         match source {
-            Source::Force(amplitude) => Self { force: Some(amplitude), ..none },
-            Source::Imbalance(amplitude) => Self { imbalance: Some(amplitude), ..none },
-            Source::Base(amplitude) => Self { base: Some(amplitude), ..none },
-            Source::BaseAcceleration(amplitude) => Self { base_acceleration: Some(amplitude), ..none },
+            Source::Harmonic(of, size) => {
+                let mut file = none;
+                *file.amplitude(of) = Some(size);
+                file
+            }
             Source::Decay(start) => Self { start: Some(start), omega: None, ..none },
             Source::History(history) => Self { start, ..history.into() },
         }
@@ -156,27 +143,16 @@ impl From<Forcing> for InFile {
 impl TryFrom<InFile> for Forcing {
     type Error = Refused;
 
-    fn try_from(file: InFile) -> Result<Self, Refused> {
+    fn try_from(mut file: InFile) -> Result<Self, Refused> {
         let history = file.history()?;
         let stray = file.stray(&["omega"]).filter(|_| history.is_none());
         let others = file.histories().skip(1).count();
-        let InFile { force, imbalance, base, base_acceleration, start, omega, .. } = file;
-        let sources = [
-            force.map(Source::Force),
-            imbalance.map(Source::Imbalance),
-            base.map(Source::Base),
-            base_acceleration.map(Source::BaseAcceleration),
-            history.map(Source::History),
-        ];
-        let given: Vec<Source> = sources.into_iter().flatten().collect();
-        if let (Some(field), [source]) = (stray, given.as_slice()) {
-            let beside = match source {
-                Source::Force(_) => "P",
-                Source::Imbalance(_) => "imbalance",
-                Source::BaseAcceleration(_) => "base_acceleration",
-                _ => "base",
-            };
-            return Err(Refused::Beside { field, beside });
+        let harmonic = |of: Amplitude| file.amplitude(of).map(|size| Source::Harmonic(of, size));
+        let harmonics: Vec<Source> = Amplitude::ALL.into_iter().filter_map(harmonic).collect();
+        let given: Vec<Source> = harmonics.into_iter().chain(history.map(Source::History)).collect();
+        let InFile { start, omega, .. } = file;
+        if let (Some(field), [Source::Harmonic(of, _)]) = (stray, given.as_slice()) {
+            return Err(Refused::Beside { field, beside: of.parameter().symbol() });
         }
         if let (Some(field), []) = (stray, given.as_slice()) {
             return Err(Refused::Beside { field, beside: "start" });

@@ -39,6 +39,7 @@
 //! This crate never steps in time, reads files, starts threads or prints. All quantities are in SI units.
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
+mod amplitude;
 mod band;
 mod bare;
 mod coupled;
@@ -69,6 +70,7 @@ pub mod unit;
 mod value;
 mod wall;
 
+pub use amplitude::Amplitude;
 pub use band::Worst;
 pub use bare::Bare;
 pub use coupled::{Coupled, Side};

@@ -3,6 +3,7 @@
 
 pub mod place;
 
+use crate::amplitude::Amplitude;
 use crate::unit::{
     ACCELERATION, DAMPING, DENSITY, FORCE, FREQUENCY, IMBALANCE, LENGTH, LOSS, MASS, MODULUS, NONE, STIFFNESS,
 };
@@ -89,7 +90,15 @@ impl Parameter {
     /// Those that the paper varies, in the order of its tables.
     pub const PAPER: [Self; 4] = [Self::K2, Self::C2, Self::D, Self::C];
     /// Those that set the size of the forcing, of which a scene has one.
-    pub const AMPLITUDES: [Self; 4] = [Self::P, Self::Imbalance, Self::Base, Self::BaseAcceleration];
+    pub const AMPLITUDES: [Self; Amplitude::ALL.len()] = {
+        let mut all = [Self::P; Amplitude::ALL.len()];
+        let mut i = 0;
+        while i < all.len() {
+            all[i] = Amplitude::ALL[i].parameter();
+            i += 1;
+        }
+        all
+    };
 
     /// Symbol, words, units: its own entry of the catalogue.
     const fn entry(self) -> (&'static str, &'static str, &'static [Unit]) {
@@ -209,6 +218,34 @@ impl Parameter {
     /// It is no such number; the message says what to give.
     pub fn read(self, text: &str) -> Result<f64, String> {
         unit::read(text, self.units())
+    }
+}
+
+impl Amplitude {
+    /// Its parameter, one of [`Parameter::AMPLITUDES`].
+    pub const fn parameter(self) -> Parameter {
+        match self {
+            Self::Force => Parameter::P,
+            Self::Imbalance => Parameter::Imbalance,
+            Self::Base => Parameter::Base,
+            Self::BaseAcceleration => Parameter::BaseAcceleration,
+        }
+    }
+
+    /// The transmissibility as a formula in symbols: of the force on the ground by the force on the structure, or of the displacement of the
+    /// structure by that of the base.
+    pub fn transmissibility(self) -> String {
+        let symbol = self.parameter().symbol();
+        let omega = match self.power().abs() {
+            0 => "",
+            1 => " omega",
+            _ => " omega²",
+        };
+        match (self.is_of_base(), omega) {
+            (true, _) => format!("x1max{omega} / {symbol}"),
+            (false, "") => format!("that force / {symbol}"),
+            (false, _) => format!("that force / ({symbol}{omega})"),
+        }
     }
 }
 

@@ -14,26 +14,14 @@ impl Bare {
 
     /// The derivative of the logarithm of the force's amplitude, and that of the angle by which it leads at t = 0.
     fn forcing_by(&self, parameter: Parameter) -> [f64; 2] {
-        let size = |amplitude: Parameter, value: f64| {
-            if parameter == amplitude && value != 0.0 { [1.0 / value, 0.0] } else { [0.0; 2] }
-        };
-        match self.source() {
-            Source::Force(force) => size(Parameter::P, force.get()),
-            Source::Imbalance(_) if parameter == Parameter::Omega => [2.0 / self.omega, 0.0],
-            Source::Imbalance(imbalance) => size(Parameter::Imbalance, imbalance.get()),
-            Source::BaseAcceleration(acceleration) => {
-                let [growth, turn] = self.pushing_by(parameter);
-                match parameter {
-                    Parameter::Omega => [growth - 2.0 / self.omega, turn],
-                    Parameter::K1 | Parameter::C1 => [growth, turn],
-                    _ => size(Parameter::BaseAcceleration, acceleration.get()),
-                }
-            }
-            Source::Base(base) => match parameter {
-                Parameter::K1 | Parameter::C1 | Parameter::Omega => self.pushing_by(parameter),
-                _ => size(Parameter::Base, base.get()),
-            },
-            Source::Decay(_) | Source::History(_) => [0.0; 2],
+        let Source::Harmonic(of, size) = self.source() else { return [0.0; 2] };
+        if parameter == of.parameter() && size.get() != 0.0 {
+            return [1.0 / size.get(), 0.0];
+        }
+        let [growth, turn] = if of.is_of_base() { self.pushing_by(parameter) } else { [0.0; 2] };
+        match (parameter, of.power()) {
+            (Parameter::Omega, power) if power != 0 => [growth + f64::from(power) / self.omega, turn],
+            _ => [growth, turn],
         }
     }
 

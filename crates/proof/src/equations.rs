@@ -9,7 +9,7 @@ use crate::elementary::pi;
 use crate::loss::Factor;
 use crate::number::{SPEED, STATE};
 use crate::{Event, Failure, Interval, Number, Taylor};
-use retune_model::{Contact, Damper, Forcing, Primary, Scene, Side, Source, Surfaces};
+use retune_model::{Amplitude, Contact, Damper, Forcing, Primary, Scene, Side, Source, Surfaces};
 
 /// The numbers of a scene.
 #[derive(Clone, Debug)]
@@ -82,17 +82,17 @@ impl Equations {
         // k1 y + c1 dy/dt with y = Y cos φ.
         let base = |y: Interval| [y * k1, Interval::ZERO, -(y * c1)];
         let force = match source {
-            Source::Force(p) => [number(p.get()), Interval::ZERO, Interval::ZERO],
-            Source::Imbalance(me) => [Interval::ZERO, number(me.get()), Interval::ZERO],
-            Source::Base(y) => base(number(y.get())),
+            Source::Harmonic(Amplitude::Force, p) => [number(p.get()), Interval::ZERO, Interval::ZERO],
+            Source::Harmonic(Amplitude::Imbalance, me) => [Interval::ZERO, number(me.get()), Interval::ZERO],
+            Source::Harmonic(Amplitude::Base, y) => base(number(y.get())),
             // Y = a/ω².
-            Source::BaseAcceleration(a) => base(number(a.get())),
+            Source::Harmonic(Amplitude::BaseAcceleration, a) => base(number(a.get())),
             Source::Decay(_) => return Err(Failure::Scene("a free decay, which does not repeat")),
             Source::History(_) => {
                 return Err(Failure::Scene("a pulse or a record, under which no motion repeats"));
             }
         };
-        let is_over_square = matches!(source, Source::BaseAcceleration(_));
+        let is_over_square = matches!(source, Source::Harmonic(Amplitude::BaseAcceleration, _));
         let (walls, hertz, factors) = match contact {
             None => ([Interval::ENTIRE; 2], [Interval::ZERO; 2], [Factor::None; 2]),
             Some(Contact::Rigid(_)) => return Err(Failure::Scene("rigid walls")),

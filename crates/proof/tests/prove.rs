@@ -1,7 +1,7 @@
 //! What is proven of motions of the paper's dampers, and what is not.
 
 use nalgebra::Matrix4;
-use retune_model::{Bare, Coupled, Forcing, NonNegative, Parameter, Scene, Side, Source, Steady};
+use retune_model::{Amplitude, Bare, Coupled, Forcing, NonNegative, Parameter, Scene, Side, Source, Steady};
 use retune_proof::{Event, Failure, Interval, Stability, Start, prove, prove_over, prove_steady};
 use std::f64::consts::TAU;
 
@@ -63,10 +63,10 @@ const SOLVER: [f64; 2] = [1e-10, 1e-10];
 fn sources() -> [Source; 4] {
     let size = |size: f64| NonNegative::new(size).expect("an amplitude");
     [
-        Source::Force(size(30.5)),
-        Source::Imbalance(size(30.5)),
-        Source::Base(size(0.02)),
-        Source::BaseAcceleration(size(0.7)),
+        Source::Harmonic(Amplitude::Force, size(30.5)),
+        Source::Harmonic(Amplitude::Imbalance, size(30.5)),
+        Source::Harmonic(Amplitude::Base, size(0.02)),
+        Source::Harmonic(Amplitude::BaseAcceleration, size(0.7)),
     ]
 }
 

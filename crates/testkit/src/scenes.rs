@@ -2,8 +2,8 @@
 #![allow(clippy::approx_constant, reason = "the paper's 6.28 and 0.318 are not 2π and 1/π")]
 
 use retune_model::{
-    Bare, Bounce, Contact, Coupled, Damper, Forcing, Loss, NonNegative, PoissonRatio, Positive, Primary,
-    RegularisedContact, RegularisedState, Restitution, Rigid, Scene, Source, Surfaces,
+    Amplitude, Bare, Bounce, Contact, Coupled, Damper, Forcing, Loss, NonNegative, PoissonRatio, Positive,
+    Primary, RegularisedContact, RegularisedState, Restitution, Rigid, Scene, Source, Surfaces,
 };
 
 /// A scene as plain numbers in the paper's symbols and SI units, to be varied by `..`.
@@ -153,9 +153,9 @@ impl Numbers {
     }
 
     /// The same with another kind of forcing of the size `p`.
-    pub fn forced_by(&self, source: fn(NonNegative) -> Source) -> Scene {
+    pub fn forced_by(&self, amplitude: Amplitude) -> Scene {
         let forcing = Forcing {
-            source: source(non_negative(self.p)),
+            source: Source::Harmonic(amplitude, non_negative(self.p)),
             frequency: non_negative(self.omega),
             start: None,
         };

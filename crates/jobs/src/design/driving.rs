@@ -1,7 +1,7 @@
 //! What moves the structure of a design: a harmonic force or base over a band of frequencies, or a shock or a record.
 
 use crate::Error;
-use retune_model::{Course, Forcing, History, NonNegative, Parameter, Source};
+use retune_model::{Amplitude, Course, Forcing, History, NonNegative, Source};
 use retune_solver::Window;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -11,8 +11,8 @@ use serde::{Serialize, Serializer};
 pub enum Driving {
     /// A harmonic.
     Harmonic {
-        /// A parameter of a forcing, and its amplitude in the SI unit.
-        amplitude: (Parameter, f64),
+        /// What its amplitude is of, and its size in the SI unit.
+        amplitude: (Amplitude, f64),
         /// Its angular frequencies, rad/s.
         band: [f64; 2],
     },
@@ -29,10 +29,10 @@ pub enum Driving {
 const FREE: f64 = 10.0;
 
 impl Driving {
-    /// The parameter of a harmonic; none of a history.
-    pub fn parameter(&self) -> Option<Parameter> {
+    /// What the amplitude of a harmonic is of; none of a history.
+    pub fn amplitude(&self) -> Option<Amplitude> {
         match self {
-            Self::Harmonic { amplitude: (parameter, _), .. } => Some(*parameter),
+            Self::Harmonic { amplitude: (of, _), .. } => Some(*of),
             Self::History { .. } => None,
         }
     }
@@ -53,17 +53,11 @@ impl Driving {
 
     /// The forcing; a harmonic has that frequency of its band which is nearest to `natural`, rad/s.
     pub(super) fn forcing(&self, natural: f64) -> Result<Forcing, Error> {
-        let ((parameter, amplitude), [from, to]) = match self {
+        let ((of, size), [from, to]) = match self {
             Self::Harmonic { amplitude, band } => (*amplitude, *band),
             Self::History { forcing, .. } => return Ok(*forcing),
         };
-        let amplitude = NonNegative::new(amplitude)?;
-        let source = match parameter {
-            Parameter::Imbalance => Source::Imbalance(amplitude),
-            Parameter::Base => Source::Base(amplitude),
-            Parameter::BaseAcceleration => Source::BaseAcceleration(amplitude),
-            _ => Source::Force(amplitude),
-        };
+        let source = Source::Harmonic(of, NonNegative::new(size)?);
         Ok(Forcing { source, frequency: NonNegative::new(natural.clamp(from, to))?, start: None })
     }
 
@@ -79,8 +73,8 @@ impl Serialize for Driving {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(Some(2))?;
         match self {
-            Self::Harmonic { amplitude: (parameter, amplitude), band } => {
-                map.serialize_entry(parameter.symbol(), amplitude)?;
+            Self::Harmonic { amplitude: (of, size), band } => {
+                map.serialize_entry(of.parameter().symbol(), size)?;
                 map.serialize_entry("band", band)?;
             }
             Self::History { forcing, after } => {

@@ -6,7 +6,7 @@ use super::requirements::{Dampers, Requirements, STEEL, Wall};
 use super::typed::{Specification, Typed};
 use super::words::{percent, radians};
 use crate::Error;
-use retune_model::{Measure, Parameter, Positive, Unit, unit};
+use retune_model::{Amplitude, Measure, Parameter, Positive, Unit, unit};
 use retune_optim::{Limit, Limits};
 use retune_study::rounded;
 use std::f64::consts::TAU;
@@ -173,12 +173,12 @@ fn damping(specification: &Specification, critical: f64) -> Result<f64, Error> {
 }
 
 /// What moves the structure.
-fn driving(specification: &Specification) -> Result<(Parameter, f64), Error> {
+fn driving(specification: &Specification) -> Result<(Amplitude, f64), Error> {
     let all = [
-        ("force", &specification.force, Parameter::P),
-        ("imbalance", &specification.imbalance, Parameter::Imbalance),
-        ("base", &specification.base, Parameter::Base),
-        ("base_acceleration", &specification.base_acceleration, Parameter::BaseAcceleration),
+        ("force", &specification.force, Amplitude::Force),
+        ("imbalance", &specification.imbalance, Amplitude::Imbalance),
+        ("base", &specification.base, Amplitude::Base),
+        ("base_acceleration", &specification.base_acceleration, Amplitude::BaseAcceleration),
     ];
     let given: Vec<_> =
         all.iter().filter_map(|(name, typed, of)| Some((*name, typed.as_ref()?, *of))).collect();
@@ -187,7 +187,7 @@ fn driving(specification: &Specification) -> Result<(Parameter, f64), Error> {
             "--force",
             "what moves the structure: --force 280N, --imbalance 0.02kg·m, --base 1mm, --base-acceleration 0.1g, --shock half-sine,20ms,5g or --record FILE",
         )),
-        [(name, typed, of)] => Ok((*of, positive(typed, name, of.units())?)),
+        [(name, typed, of)] => Ok((*of, positive(typed, name, of.parameter().units())?)),
         [(first, ..), (name, typed, _), ..] => {
             Err(typed
                 .refused(name, format!("{} is given too: leave one of them out", first.replace('_', "-"))))

@@ -5,7 +5,7 @@ use super::requirements::Requirements;
 use crate::Error;
 use crate::tune::objective::searched;
 use rayon::prelude::*;
-use retune_model::{Measure, Parameter, Primary, den_hartog, nishihara_asami, warburton};
+use retune_model::{Amplitude, Measure, Primary, den_hartog, nishihara_asami, warburton};
 use retune_optim::{INFEASIBLE, Point, minimize};
 use retune_study::{Search, Study};
 use std::ops::ControlFlow;
@@ -32,14 +32,14 @@ impl Formula {
     /// without damping of the structure, and Den Hartog's. Warburton's where it is the displacement under an imbalance, or the
     /// acceleration under a constant force. Else Den Hartog's.
     pub fn all(requirements: &Requirements, primary: &Primary) -> Vec<Self> {
-        let driving = requirements.driving.parameter();
-        let imbalance = driving == Some(Parameter::Imbalance);
-        let accelerated = driving == Some(Parameter::BaseAcceleration);
+        let driving = requirements.driving.amplitude();
+        let imbalance = driving == Some(Amplitude::Imbalance);
+        let accelerated = driving == Some(Amplitude::BaseAcceleration);
         let of_acceleration = requirements.goal == Measure::Acceleration;
         let squared = !accelerated && imbalance != of_acceleration;
         let exact = match requirements.goal {
             Measure::Displacement => !imbalance && !accelerated,
-            Measure::GroundForce => driving == Some(Parameter::P),
+            Measure::GroundForce => driving == Some(Amplitude::Force),
             _ => accelerated && of_acceleration,
         };
         let of = |name, formula: fn(&Primary, f64) -> [f64; 2]| {

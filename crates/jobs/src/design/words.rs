@@ -133,12 +133,8 @@ fn moved(requirements: &Requirements) -> String {
             return format!("{}. Largest values from {from} s to {end} s", forced(forcing));
         }
     };
-    let driving = match amplitude {
-        (Parameter::Imbalance, imbalance) => format!("an imbalance of {} kg·m", rounded(imbalance, 4)),
-        (Parameter::Base, base) => format!("a base that moves by {}", sized(base, "m")),
-        (Parameter::BaseAcceleration, a) => format!("a base that is accelerated by {}", sized(a, "m/s²")),
-        (_, force) => format!("a force of {}", sized(force, "N")),
-    };
+    let (of, size) = amplitude;
+    let driving = format!("{} {}", of.words(), sized(size, of.parameter().unit()));
     let unit = requirements.frequencies;
     let [from, to] = band.map(|end| frequency(end, unit));
     format!("{driving}, {} to {to}", from.trim_end_matches(unit).trim_end())

@@ -22,7 +22,7 @@ fn asked(specification: Value) -> Specification {
 /// The amplitude and the band of a harmonic.
 fn harmonic(requirements: &Requirements) -> ((Parameter, f64), [f64; 2]) {
     match requirements.driving {
-        Driving::Harmonic { amplitude, band } => (amplitude, band),
+        Driving::Harmonic { amplitude: (of, size), band } => ((of.parameter(), size), band),
         Driving::History { .. } => panic!("a harmonic"),
     }
 }

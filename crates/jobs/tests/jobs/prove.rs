@@ -3,7 +3,7 @@
 use retune_jobs::Error;
 use retune_jobs::prove::band::{Band, Guesses, Why, band, steady_band};
 use retune_jobs::prove::{Guess, Proof, prove, prove_band};
-use retune_model::{Bare, Coupled, Finite, Forcing, NonNegative, Parameter, Scene, Source, Start};
+use retune_model::{Amplitude, Bare, Coupled, Finite, Forcing, NonNegative, Parameter, Scene, Source, Start};
 use retune_study::Setting;
 use retune_testkit::observers::{good, refused};
 use serde_json::{Value, json};
@@ -205,10 +205,10 @@ fn contract_both_ends_of_a_part_that_is_left_out_have_their_reasons() {
 fn linear() -> Vec<Scene> {
     let size = |size: f64| NonNegative::new(size).expect("an amplitude");
     let sources = [
-        Source::Force(size(30.5)),
-        Source::Imbalance(size(30.5)),
-        Source::Base(size(0.02)),
-        Source::BaseAcceleration(size(0.7)),
+        Source::Harmonic(Amplitude::Force, size(30.5)),
+        Source::Harmonic(Amplitude::Imbalance, size(30.5)),
+        Source::Harmonic(Amplitude::Base, size(0.02)),
+        Source::Harmonic(Amplitude::BaseAcceleration, size(0.7)),
     ];
     let scene = retune_study::read(&place("results/tmd")).expect("a study").scene;
     let with = |source| Scene { forcing: Forcing { source, ..scene.forcing }, ..scene };

@@ -1,6 +1,7 @@
 //! How a forcing stands in a study.
 
 use super::start::Start;
+use crate::amplitude::Amplitude;
 use crate::history::{Course, History, Of, Pulse, Shape};
 use crate::made::{Form, Harmonic, Made, Recipe, Spectrum, Sweep, Unmade};
 use crate::record::{Column, Record, RecordFile};
@@ -144,6 +145,16 @@ pub(crate) enum Refused {
 }
 
 impl InFile {
+    /// The field of an amplitude.
+    pub(super) fn amplitude(&mut self, of: Amplitude) -> &mut Option<NonNegative> {
+        match of {
+            Amplitude::Force => &mut self.force,
+            Amplitude::Imbalance => &mut self.imbalance,
+            Amplitude::Base => &mut self.base,
+            Amplitude::BaseAcceleration => &mut self.base_acceleration,
+        }
+    }
+
     /// The first of the fields of pulses and records that is given and not among `known`.
     pub(super) fn stray(&self, known: &[&str]) -> Option<&'static str> {
         let fields = [

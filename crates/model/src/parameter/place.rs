@@ -80,17 +80,14 @@ impl Place<'_> {
 impl Parameter {
     /// Where it stands in a scene.
     fn place(self, scene: &mut Scene) -> Result<Place<'_>, Absent> {
-        let has = scene.forcing.given_by();
+        let (has, has_frequency) = (scene.forcing.given_by(), scene.forcing.source.is_harmonic());
         let Scene { primary, forcing, damper } = scene;
         let place = match (self, &mut forcing.source) {
             (Self::M1, _) => Place::Positive(&mut primary.mass),
             (Self::C1, _) => Place::NonNegative(&mut primary.damping),
             (Self::K1, _) => Place::NonNegative(&mut primary.stiffness),
-            (Self::P, Source::Force(at))
-            | (Self::Imbalance, Source::Imbalance(at))
-            | (Self::Base, Source::Base(at))
-            | (Self::BaseAcceleration, Source::BaseAcceleration(at)) => Place::NonNegative(at),
-            (Self::Omega, source) if source.is_harmonic() => Place::NonNegative(&mut forcing.frequency),
+            (one, Source::Harmonic(of, size)) if one == of.parameter() => Place::NonNegative(size),
+            (Self::Omega, _) if has_frequency => Place::NonNegative(&mut forcing.frequency),
             (one, _) if one.is_frequency() || Self::AMPLITUDES.contains(&one) => {
                 return Err(Absent::Forcing(has));
             }
@@ -249,10 +246,7 @@ impl Forcing {
     /// The number that sets the size of the motion, one of [`Parameter::AMPLITUDES`]. A free decay has none.
     pub fn amplitude(&self) -> Option<(Parameter, NonNegative)> {
         match self.source {
-            Source::Force(amplitude) => Some((Parameter::P, amplitude)),
-            Source::Imbalance(amplitude) => Some((Parameter::Imbalance, amplitude)),
-            Source::Base(amplitude) => Some((Parameter::Base, amplitude)),
-            Source::BaseAcceleration(amplitude) => Some((Parameter::BaseAcceleration, amplitude)),
+            Source::Harmonic(of, size) => Some((of.parameter(), size)),
             Source::Decay(_) | Source::History(_) => None,
         }
     }

@@ -1,20 +1,19 @@
 //! The catalogue: every parameter is read where it is set, is refused out of its range, and says where it is absent.
 
 use retune_model::{
-    Absent, Damper, Design, Finite, NonNegative, Parameter, PerVariable, Scene, Source, Start, Unsettable,
+    Absent, Amplitude, Damper, Design, Finite, NonNegative, Parameter, PerVariable, Scene, Source, Start,
+    Unsettable,
 };
 use retune_testkit::scenes::{Numbers, SSVI};
 
 /// The scenes of the four forcings with Hertz's surfaces, one of them with a restitution, and one with rigid walls.
 fn scenes() -> [Scene; 5] {
-    let amplitude = NonNegative::new(0.5).expect("a number");
+    let size = NonNegative::new(0.5).expect("a number");
     let rigid = Numbers { rigid: Some(0.7), ..SSVI }.scene();
-    let sources =
-        [Source::Force, Source::Imbalance, Source::Base, Source::BaseAcceleration].map(|of| of(amplitude));
-    let [a, b, c, d] = sources.map(|source| {
+    let [a, b, c, d] = Amplitude::ALL.map(|of| {
         let mut scene = SSVI.scene();
-        scene.forcing.source = source;
-        let loss = if matches!(source, Source::Base(_)) { Parameter::Restitution } else { Parameter::Lambda };
+        scene.forcing.source = Source::Harmonic(of, size);
+        let loss = if of == Amplitude::Base { Parameter::Restitution } else { Parameter::Lambda };
         loss.set(&mut scene, 0.3).expect("in range");
         Parameter::Strength.set(&mut scene, 2e7).expect("in range");
         Parameter::Density.set(&mut scene, 1200.0).expect("in range");

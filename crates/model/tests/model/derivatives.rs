@@ -1,6 +1,6 @@
 //! Every derivative that the model states, against finite differences of what it is the derivative of.
 
-use retune_model::{Coupled, Measure, NonNegative, Parameter, Side, Source};
+use retune_model::{Amplitude, Coupled, Measure, Parameter, Side};
 use retune_testkit::scenes::{LOSSY, Numbers, ROW1, SSVI, Spread, TMD, TWO_SIDED, slope};
 
 const T: f64 = 0.37;
@@ -171,10 +171,8 @@ fn exact_rates_of_the_bare_motion() {
 /// Every measure of the steady response by every parameter of the damper, below and above the structure's own frequency.
 #[test]
 fn exact_steady_derivatives() {
-    let sources: [fn(NonNegative) -> Source; 4] =
-        [Source::Force, Source::Imbalance, Source::Base, Source::BaseAcceleration];
     let mut spread = Spread::new(4);
-    for source in sources {
+    for amplitude in Amplitude::ALL {
         for _ in 0..20 {
             let numbers = Numbers {
                 k2: spread.logarithmic(200.0, 4000.0),
@@ -183,7 +181,7 @@ fn exact_steady_derivatives() {
                 omega: spread.logarithmic(4.0, 9.0),
                 ..TMD
             };
-            let scene = numbers.forced_by(source);
+            let scene = numbers.forced_by(amplitude);
             let damper = scene.damper.expect("a damper");
             let at = |variable: Parameter, value: f64| {
                 let mut damper = damper;

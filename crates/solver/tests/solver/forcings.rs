@@ -1,7 +1,7 @@
 //! What moves the structure beside a force: a rotating imbalance, a moving base, a start away from rest. Closed forms without contacts,
 //! other methods and samples with them.
 
-use retune_model::{Bare, Coupled, Finite, Forcing, Measure, NonNegative, Scene, Source, Start};
+use retune_model::{Amplitude, Bare, Coupled, Finite, Forcing, Measure, NonNegative, Scene, Source, Start};
 use retune_solver::{
     Also, Ask, Extremes, Method, Rows, Settings, Window, e1_max, extremes, simulate, trajectory,
 };
@@ -17,7 +17,7 @@ fn asked(scene: &Scene, window: Window, measure: Measure, method: Method, phase:
 #[test]
 fn exact_a_moving_base_pulls_by_spring_and_dashpot() {
     let numbers = Numbers { p: 0.02, ..SSVI };
-    let Scene { primary, forcing, .. } = numbers.forced_by(Source::Base);
+    let Scene { primary, forcing, .. } = numbers.forced_by(Amplitude::Base);
     let mut spread = Spread::new(7);
     for _ in 0..100 {
         let (t, phase) = (10.0 * spread.unit(), 2.0 * PI * spread.unit());
@@ -37,7 +37,7 @@ fn exact_an_imbalance_is_a_force() {
     let numbers = Numbers { p: 20.0, ..SSVI };
     let force = Numbers { p: 20.0 * SSVI.omega * SSVI.omega, ..SSVI }.scene();
     let window = Window { from: 5.0, to: 30.0 };
-    let [turned, forced] = [numbers.forced_by(Source::Imbalance), force]
+    let [turned, forced] = [numbers.forced_by(Amplitude::Imbalance), force]
         .map(|scene| simulate(&scene, window, &Settings::default()).expect("a run"));
     assert_eq!(turned, forced);
 }
@@ -46,8 +46,8 @@ fn exact_an_imbalance_is_a_force() {
 #[test]
 fn exact_an_accelerated_base_is_a_moving_base() {
     let accelerated =
-        Numbers { p: 0.02 * SSVI.omega * SSVI.omega, ..SSVI }.forced_by(Source::BaseAcceleration);
-    let moving = Numbers { p: 0.02, ..SSVI }.forced_by(Source::Base);
+        Numbers { p: 0.02 * SSVI.omega * SSVI.omega, ..SSVI }.forced_by(Amplitude::BaseAcceleration);
+    let moving = Numbers { p: 0.02, ..SSVI }.forced_by(Amplitude::Base);
     let window = Window { from: 5.0, to: 30.0 };
     let [a, b] =
         [accelerated, moving].map(|scene| simulate(&scene, window, &Settings::default()).expect("a run"));
@@ -62,10 +62,11 @@ fn exact_an_accelerated_base_is_a_moving_base() {
 #[test]
 fn exact_late_motions_are_steady() {
     let late = Window { from: 900.0, to: 1000.0 };
-    let imbalance = Source::Imbalance as fn(NonNegative) -> Source;
-    for (source, p) in [(imbalance, 5.0), (Source::Base, 0.01), (Source::BaseAcceleration, 0.4)] {
+    for (amplitude, p) in
+        [(Amplitude::Imbalance, 5.0), (Amplitude::Base, 0.01), (Amplitude::BaseAcceleration, 0.4)]
+    {
         let numbers = Numbers { p, ..TMD };
-        let with = numbers.forced_by(source);
+        let with = numbers.forced_by(amplitude);
         for scene in [with, Scene { damper: None, ..with }] {
             let bare = Bare::new(&scene.primary, &scene.forcing);
             let steady = match &scene.damper {
@@ -98,7 +99,7 @@ fn invariant_no_sample_of_the_force_on_a_moving_ground_is_above_its_maximum() {
             c: 0.3 * spread.unit(),
             ..SSVI
         };
-        let scene = numbers.forced_by(Source::Base);
+        let scene = numbers.forced_by(Amplitude::Base);
         let found = asked(&scene, window, Measure::GroundForce, Method::Hybrid, 0.0).largest.value;
         let mut largest = 0.0_f64;
         let settings = Settings { rtol: 1e-9, ..Settings::default() };

@@ -2,7 +2,7 @@
 
 use crate::forcings::decay;
 use nalgebra::Complex;
-use retune_model::{Bare, Coupled, Finite, Scene, Source, Start};
+use retune_model::{Amplitude, Bare, Coupled, Finite, Scene, Start};
 use retune_solver::{Losses, Settings, Window, losses, simulate};
 use retune_testkit::scenes::{LOSSY, Numbers, SSVI, TMD, TWO_SIDED};
 use std::f64::consts::TAU;
@@ -44,7 +44,7 @@ fn exact_a_free_decay_loses_what_is_missing() {
 fn exact_powers_of_a_steady_motion() {
     let period = TAU / TMD.omega;
     let window = Window { from: 300.0 * period, to: 310.0 * period };
-    let base = Numbers { p: 0.01, ..TMD }.forced_by(Source::Base);
+    let base = Numbers { p: 0.01, ..TMD }.forced_by(Amplitude::Base);
     for (with, base) in [(TMD.scene(), 0.0), (base, 0.01)] {
         for scene in [with, Scene { damper: None, ..with }] {
             let steady = match &scene.damper {

@@ -4,32 +4,21 @@
 use super::Hunt;
 use super::twofold::Twofold;
 use crate::scenes::{Numbers, Spread, TMD};
-use retune_model::{Bare, Coupled, Measure, Scene, Source, Worst};
+use retune_model::{Amplitude, Bare, Coupled, Measure, Scene, Worst};
 
 /// A quantity, of a structure with its damper or of a bare one.
 #[derive(Clone, Copy, Debug)]
 struct Quantity {
     of: Measure,
     bare: bool,
-    forcing: By,
-}
-
-/// What the amplitude `p` of a scene is that of.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum By {
-    Force,
-    Imbalance,
-    Base,
-    BaseAcceleration,
+    /// What the amplitude `p` of a scene is of.
+    forcing: Amplitude,
 }
 
 /// The compared quantities: all but the contact force, and without a damper all but the stroke.
 fn quantities() -> Vec<Quantity> {
-    let forced = QUANTITIES.into_iter();
-    let turned = QUANTITIES.map(|quantity| Quantity { forcing: By::Imbalance, ..quantity });
-    let shaken = QUANTITIES.map(|quantity| Quantity { forcing: By::Base, ..quantity });
-    let accelerated = QUANTITIES.map(|quantity| Quantity { forcing: By::BaseAcceleration, ..quantity });
-    forced.chain(turned).chain(shaken).chain(accelerated).collect()
+    let all = Amplitude::ALL.into_iter();
+    all.flat_map(|forcing| QUANTITIES.map(|quantity| Quantity { forcing, ..quantity })).collect()
 }
 
 /// Those under a force.
@@ -48,11 +37,11 @@ const QUANTITIES: [Quantity; 11] = [
 ];
 
 const fn with_damper(of: Measure) -> Quantity {
-    Quantity { of, bare: false, forcing: By::Force }
+    Quantity { of, bare: false, forcing: Amplitude::Force }
 }
 
 const fn bare(of: Measure) -> Quantity {
-    Quantity { of, bare: true, forcing: By::Force }
+    Quantity { of, bare: true, forcing: Amplitude::Force }
 }
 
 /// The response at `centre + offset` rad/s, straight from equation (1): real and imaginary parts of
@@ -66,14 +55,13 @@ fn response(n: &Numbers, quantity: Quantity, centre: Twofold, offset: f64) -> f6
     let square = |re: Twofold, im: Twofold| (re * re + im * im).value();
     let p = n.p
         * match quantity.forcing {
-            By::Force => 1.0,
-            By::Imbalance => u.value(),
-            By::Base => square(k1, c1).sqrt(),
-            By::BaseAcceleration => square(k1, c1).sqrt() / u.value(),
+            Amplitude::Force => 1.0,
+            Amplitude::Imbalance => u.value(),
+            Amplitude::Base => square(k1, c1).sqrt(),
+            Amplitude::BaseAcceleration => square(k1, c1).sqrt() / u.value(),
         };
     // On a moving ground the force is that by which the masses are accelerated.
-    let is_inertia =
-        quantity.of == Measure::GroundForce && matches!(quantity.forcing, By::Base | By::BaseAcceleration);
+    let is_inertia = quantity.of == Measure::GroundForce && quantity.forcing.is_of_base();
     let of_displacement = |amplitude2: f64| match quantity.of {
         Measure::Energy => 0.5 * p * p * n.k1.max((m1 * u).value()) * amplitude2,
         Measure::Velocity => p * (u.value() * amplitude2).sqrt(),
@@ -180,13 +168,7 @@ fn searched(n: &Numbers, quantity: Quantity, [from, to]: [f64; 2]) -> f64 {
 }
 
 fn found(n: &Numbers, quantity: Quantity, band: [f64; 2]) -> Worst {
-    let source = match quantity.forcing {
-        By::Force => Source::Force,
-        By::Imbalance => Source::Imbalance,
-        By::Base => Source::Base,
-        By::BaseAcceleration => Source::BaseAcceleration,
-    };
-    let Scene { primary, forcing, damper } = n.forced_by(source);
+    let Scene { primary, forcing, damper } = n.forced_by(quantity.forcing);
     match damper.filter(|_| !quantity.bare) {
         None => Bare::new(&primary, &forcing).steady_max(quantity.of, band),
         Some(damper) => Coupled::new(&primary, &forcing, &damper).steady_max(quantity.of, band),
@@ -223,10 +205,10 @@ fn difference(n: &Numbers, quantity: Quantity, band @ [from, to]: [f64; 2]) -> f
 fn least_of_a_resonance(n: &Numbers, quantity: Quantity) -> f64 {
     let omega = (n.k1 / n.m1).sqrt();
     let still = match quantity.forcing {
-        By::Force => n.p / n.k1,
-        By::Imbalance => n.p / n.m1,
-        By::Base => n.p,
-        By::BaseAcceleration => n.p * n.m1 / n.k1,
+        Amplitude::Force => n.p / n.k1,
+        Amplitude::Imbalance => n.p / n.m1,
+        Amplitude::Base => n.p,
+        Amplitude::BaseAcceleration => n.p * n.m1 / n.k1,
     };
     match quantity.of {
         Measure::Energy => 1e20 * 0.5 * n.k1 * still * still,
