@@ -7,11 +7,11 @@ use serde_json::{Value, json};
 /// What is drawn of a forcing: its words and its unit; none of a free decay.
 pub fn forced(forcing: &Forcing) -> Option<Value> {
     let (name, words, unit) = match forcing.source {
-        Source::Harmonic(Amplitude::Base, _) => ("y", "displacement of the base", "m"),
-        Source::Harmonic(of, _) if of.is_of_base() => ("a0", "acceleration of the base", "m/s²"),
-        Source::History(History { of: Of::BaseAcceleration, .. }) => {
+        Source::Harmonic(Amplitude::BaseAcceleration, _)
+        | Source::History(History { of: Of::BaseAcceleration, .. }) => {
             ("a0", "acceleration of the base", "m/s²")
         }
+        Source::Harmonic(of, _) if of.is_of_base() => ("y", "displacement of the base", "m"),
         Source::Harmonic(..) | Source::History(_) => ("f", "force on the structure", "N"),
         Source::Decay(_) => return None,
     };
