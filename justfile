@@ -53,26 +53,6 @@ simulate STUDY="studies/ssvi.json" *OPTIONS:
 prove STUDY *OPTIONS:
     {{retune}} prove "$@"
 
-# Prove the tuned dampers over bands, the hedged one at each restitution of its objective, into results/proof (half an hour of one core; the TMD, in closed form, in milliseconds)
-[group('examine')]
-proof:
-    mkdir -p results/proof/single
-    {{retune}} prove results/tmd --omega 5 --to 8 --json > results/proof/tmd.json
-    {{retune}} prove results/ssvi --omega 5 --to 7.5 --most 225.82 --json > results/proof/ssvi.json
-    {{retune}} prove results/ssvi --omega 7.5 --to 7.69 --most 225.82 --json > results/proof/ssvi-7.5.json
-    {{retune}} prove results/ssvi --omega 7.69 --to 7.711 --most 225.82 --json > results/proof/ssvi-7.69.json
-    {{retune}} prove results/ssvi --omega 7.8255 --to 7.8534 --most 225.82 --json > results/proof/ssvi-7.8255.json
-    {{retune}} prove results/ssvi --omega 7.854 --to 7.89 --most 225.82 --json > results/proof/ssvi-7.854.json
-    {{retune}} prove results/ssvi --omega 7.8899 --to 7.891 --most 225.82 --json > results/proof/ssvi-7.8899.json
-    for omega in 7.715 7.83 7.84 7.85; do {{retune}} prove results/ssvi --omega $omega --json > results/proof/single/ssvi-$omega.json; done
-    {{retune}} prove results/ssvi --omega 7.89 --to 8 --most 225.82 --json > results/proof/ssvi-7.89.json
-    {{retune}} prove results/ssvi-hedged --set restitution=0.6 --omega 5 --to 8 --most 255.74 --json > results/proof/ssvi-hedged.json
-    {{retune}} prove results/ssvi-hedged --set restitution=0.7 --omega 5 --to 8 --most 255.74 --json > results/proof/ssvi-hedged-0.7.json
-    {{retune}} prove results/ssvi-hedged --set restitution=0.8 --omega 5 --to 8 --most 255.74 --json > results/proof/ssvi-hedged-0.8.json
-    {{retune}} prove results/ssvi-hedged --set restitution=0.9 --omega 5 --to 8 --most 255.74 --json > results/proof/ssvi-hedged-0.9.json
-    {{retune}} prove results/ssvi-hedged --set restitution=1 --omega 5 --to 8 --most 255.74 --json > results/proof/ssvi-hedged-lossless.json
-    python3 tests/proof.py --write
-
 # Turn the parameters of a damper in the browser and see its motion and response, e.g. `just explore results/ssvi`
 [group('examine')]
 explore *OPTIONS:
@@ -161,12 +141,6 @@ test-python *OPTIONS: python
 test-explore *OPTIONS:
     cargo build --release --package retune
     python3 tests/explore.py target/release/retune "$@"
-
-# Make the picture of the explorer in the tutorial anew, docs/figures/explore.png (needs python3 and chromium)
-[group('develop')]
-picture-explore:
-    cargo build --release --package retune
-    python3 tests/explore.py target/release/retune --picture docs/figures/explore.png
 
 # Run the commands of docs/tutorial.md and compare their output with the page (needs python3 with SciPy)
 [group('develop')]

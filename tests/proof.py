@@ -16,7 +16,7 @@ README = PLACE / "README.md"
 BRANCHES = PLACE.parent / "branches" / "tuned"
 HEAD = """# Proven bands
 
-`just proof` made these files: [a proof by interval arithmetic](../../docs/proof.md) that at every frequency of a band, but for what is named, there is a stable
+`just lab proof` made these files: [a proof by interval arithmetic](../../docs/proof.md) that at every frequency of a band, but for what is named, there is a stable
 periodic motion with at most so much energy. The JSON files have the pieces with bounds on E1max, stroke and contact force over each, and why the rest is left out.
 [orbits.md](orbits.md) has single motions. `python3 tests/proof.py` checks that pieces and gaps cover the band without a hole, and that this page says what they say.
 
