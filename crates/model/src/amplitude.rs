@@ -1,6 +1,6 @@
 //! The catalogue of harmonic forcings: what the number that gives one is the amplitude of.
 
-/// What the amplitude of a harmonic forcing is of. All that moves the structure follows from three facts: whether it is a force on the
+/// What the amplitude of a harmonic forcing is of. All that moves the structure follows from two facts: whether it is a force on the
 /// structure or a motion of its base, and by which power of the angular frequency ω the force (N), or the displacement of the base (m), grows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Amplitude {
