@@ -9,6 +9,8 @@ pub mod dampers;
 #[cfg(feature = "anything")]
 pub mod dashpots;
 #[cfg(feature = "anything")]
+pub mod draws;
+#[cfg(feature = "anything")]
 mod histories;
 #[cfg(feature = "desk")]
 pub mod kills;

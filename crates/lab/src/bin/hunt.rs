@@ -5,7 +5,7 @@
 use retune_lab::hunts::{durations, robust, scenes, walk, worst};
 use retune_lab::{Any, machine};
 use retune_testkit::hunt as hunts;
-use retune_testkit::hunt::largest::Scenes;
+use retune_testkit::hunt::draws::Scenes;
 use retune_testkit::hunt::{
     Hunt, bands, branches, dampers, dashpots, kills, largest, needs, peaks, repeats, rigid, settled,
 };

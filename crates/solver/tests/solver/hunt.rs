@@ -1,6 +1,7 @@
 //! The hunt for a largest value that is missed, on few scenes.
 
-use retune_testkit::hunt::largest::{Scenes, beside_dop853, beside_everywhere, missed_in};
+use retune_testkit::hunt::draws::Scenes;
+use retune_testkit::hunt::largest::{beside_dop853, beside_everywhere, missed_in};
 
 #[test]
 fn invariant_no_search_misses_what_a_look_at_everything_finds() {

@@ -1,0 +1,110 @@
+//! The scenes of the hunt for a largest value that is missed: over the ranges that an engineer uses, and where methods have it hard.
+
+use super::histories::given;
+use crate::scenes::{Numbers, SSVI, Spread};
+use retune_model::Scene;
+
+/// A scene of an engineer's: every number within its range, some of them at its ends.
+fn anywhere(draw: &mut Spread) -> Numbers {
+    let mut within = |low: f64, high: f64| low + (high - low) * draw.unit();
+    let mut numbers = Numbers {
+        m2: 0.0,
+        k1: within(1e4, 1e5),
+        k2: within(0.0, 3500.0),
+        c2: within(0.0, 400.0),
+        d: within(0.0, 0.2),
+        c: within(0.0, 0.7),
+        r: within(0.2, 5.0),
+        omega: within(3.0, 10.0),
+        ..SSVI
+    };
+    numbers.m2 = draw.logarithmic(1.0, 3000.0);
+    // Designs end on their bounds: no gap, no spring, no dashpot.
+    for value in [&mut numbers.d, &mut numbers.c, &mut numbers.k2, &mut numbers.c2] {
+        if draw.unit() < 0.05 {
+            *value = 0.0;
+        }
+    }
+    if draw.unit() < 0.3 {
+        numbers.c2 = draw.logarithmic(0.1, 400.0);
+    }
+    numbers
+}
+
+/// Where two maxima in one step are common.
+fn dense(draw: &mut Spread) -> Numbers {
+    let mut about = |value: f64| value * (1.0 + 0.15 * draw.signed());
+    Numbers { k1: about(6e4), k2: about(2500.0), c2: about(20.0), omega: about(7.6), ..anywhere_masses(draw) }
+}
+
+fn anywhere_masses(draw: &mut Spread) -> Numbers {
+    let numbers = anywhere(draw);
+    Numbers { m2: draw.logarithmic(50.0, 1500.0), ..numbers }
+}
+
+/// Any scene whose contacts lose energy, from a thousandth to nearly all: one in two by the law of Hunt and Crossley, of the others one in two
+/// with a wall apart.
+fn lossy(draw: &mut Spread) -> Numbers {
+    let numbers = anywhere(draw);
+    if draw.unit() < 0.5 {
+        return Numbers { lambda: draw.logarithmic(1e-3, 100.0), ..numbers };
+    }
+    let mut restitution = || 0.05 + 0.95 * draw.unit();
+    let (e, other) = (restitution(), restitution());
+    Numbers { e, e_obstacle: (draw.unit() < 0.5).then_some(other), ..numbers }
+}
+
+/// A damper that its spring, up to 3000 times as stiff as an engineer's, holds to a wall for half of each period; one in three with λ, and one in
+/// nine with a dashpot up to 2500 times as strong.
+fn held(draw: &mut Spread) -> Numbers {
+    let numbers = Numbers {
+        k2: draw.logarithmic(1e3, 1e7),
+        c2: draw.logarithmic(0.1, 1e3),
+        d: if draw.unit() < 0.7 { 0.0 } else { draw.logarithmic(1e-6, 1e-2) },
+        ..anywhere(draw)
+    };
+    if draw.unit() < 1.0 / 3.0 {
+        Numbers { lambda: draw.logarithmic(1e-3, 100.0), ..numbers }
+    } else if draw.unit() < 1.0 / 6.0 {
+        Numbers { c2: draw.logarithmic(1e4, 1e6), ..numbers }
+    } else {
+        numbers
+    }
+}
+
+/// Any scene under a pulse or a record, one in five with contacts that lose energy.
+pub(super) fn under_history(draw: &mut Spread) -> Scene {
+    let numbers = if draw.unit() < 0.2 { lossy(draw) } else { anywhere(draw) };
+    given(numbers, draw)
+}
+
+/// How a scene is drawn.
+pub(super) type Draw = fn(&mut Spread) -> Scene;
+
+pub(super) const ANYWHERE: Draw = |draw| anywhere(draw).scene();
+pub(super) const DENSE: Draw = |draw| dense(draw).scene();
+pub(super) const LOSSY: Draw = |draw| lossy(draw).scene();
+pub(super) const HELD: Draw = |draw| held(draw).scene();
+
+/// What scenes are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scenes {
+    /// Any; beside DOP853 one in three with often two maxima in a step.
+    Any,
+    /// Such as often have two maxima in one step.
+    TwoMaxima,
+    /// Any, with contacts that lose energy.
+    Lossy,
+    /// Dampers that a stiff spring holds to a wall.
+    Held,
+    /// Any, under a pulse or a record.
+    Histories,
+}
+
+/// A scene, the beginning of its window and its tolerance, by number.
+pub(super) fn drawn(number: u64, scene: Draw) -> (Scene, f64, f64) {
+    let mut draw = Spread::new(number + 1);
+    let scene = scene(&mut draw);
+    let from = if draw.unit() < 0.5 { 0.0 } else { 15.0 * draw.unit() };
+    (scene, from, if number.is_multiple_of(2) { 1e-6 } else { 1e-10 })
+}
