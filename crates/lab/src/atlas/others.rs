@@ -35,8 +35,8 @@ pub const OTHERS: [Other; 8] = {
         other("diffsol BDF stepped", "diffsol", "BDF", Stepped),
         other("LSODA located", "ivp", "LSODA", Located),
         other("LSODA stepped", "ivp", "LSODA", Stepped),
-        other("CVODE BDF located", "SUNDIALS", "BDF", Located),
-        other("CVODE Adams located", "SUNDIALS", "Adams", Located),
+        other("CVODE BDF", "SUNDIALS", "BDF", Located),
+        other("CVODE Adams", "SUNDIALS", "Adams", Located),
     ]
 };
 
