@@ -273,6 +273,7 @@ impl<'a> Counts<'a> {
         Self { grid, before }
     }
 
+    /// How many of them are in a rectangle, pt.
     fn within(&self, rect: Rect) -> u32 {
         let [columns, rows] = self.grid.range(rect);
         if columns.is_empty() || rows.is_empty() {
