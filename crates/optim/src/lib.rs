@@ -21,7 +21,6 @@ pub use objective::evaluation::{Evaluation, Place, Run};
 pub use objective::limits::{INFEASIBLE, Limit, Limits, PerLimit, ranked, value_of};
 pub use objective::motions::Known;
 pub use objective::needs::{Need, Needs};
-pub use objective::pieces::Slopes;
 pub use objective::runs::Proceed;
 pub use objective::spec::{FrequencyBand, Goal, Objective, Part, Response, StiffnessRange, Stiffnesses};
 pub use objective::unusable::Unusable;

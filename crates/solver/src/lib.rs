@@ -78,5 +78,5 @@ pub use settings::{Contacts, Method, Settings, Window};
 pub use settle::settled;
 pub use simulate::{e1_max, simulate, touch_downs};
 pub use system::{Linear, LinearSystem, System};
-pub use tangent::{Gradient, Tangent, Transition, gradients};
+pub use tangent::{Tangent, Transition};
 pub use trajectory::{Moment, Rows, Sample, trajectory};

@@ -12,7 +12,7 @@ use crate::tune::objective::{coarse, kept, loose, searched};
 use crate::{Error, Observer, Progress};
 use rayon::prelude::*;
 use retune_model::{Coupled, Measure, Scene};
-use retune_optim::{Bounds, INFEASIBLE, Parameter, Point, Slopes};
+use retune_optim::{Bounds, INFEASIBLE, Parameter, Point};
 use retune_store::Journal;
 use retune_study::{Search, Study};
 use std::sync::{Mutex, PoisonError};
@@ -155,7 +155,7 @@ pub(super) fn tell_compared(
     watch.so_far(&format!("SSVI NES compared ({why}): {}", words(&of.study, of.goal, &x)))
 }
 
-/// Whether contacts lose energy: exact derivatives then take minutes.
+/// Whether contacts lose energy: runs then take several times as long.
 pub(super) fn is_lossy(Scene { primary, forcing, damper }: &Scene) -> bool {
     damper.is_some_and(|damper| Coupled::new(primary, forcing, &damper).is_lossy())
 }
@@ -183,7 +183,7 @@ pub(super) fn best(
     let sought = sought(study);
     let objective = if is_lossy(&study.scene) {
         let loose = loose(&sought, &search, &search.variables, RTOL_WITH_LOSS);
-        loose.sloping(Slopes::Differences).within(PATIENCE_WITH_LOSS)
+        loose.within(PATIENCE_WITH_LOSS)
     } else {
         searched(&sought, &search, &search.variables).within(PATIENCE)
     };

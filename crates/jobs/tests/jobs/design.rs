@@ -423,7 +423,7 @@ impl Observer for Told {
     }
 }
 
-/// With walls that lose energy, through which exact derivatives take minutes, an answer takes seconds: of a certain number of evaluations,
+/// With walls that lose energy, where runs take several times as long, an answer takes seconds: of a certain number of evaluations,
 /// not of a time. What is told of the best on the way never rises.
 #[test]
 fn contract_walls_that_lose_energy_are_answered_within_a_number_of_evaluations() {

@@ -3,7 +3,6 @@
 use super::evaluation::{Evaluation, Run};
 use super::limits::INFEASIBLE;
 use super::motions::{Known, Sought};
-use super::pieces::Slopes;
 use super::runs::{FREE, Hooks, Proceed};
 use super::spec::Goal;
 use super::unusable::Unusable;
@@ -58,7 +57,6 @@ pub struct DesignObjective {
     counts: [AtomicU64; 2],
     /// The motions that are followed; none where all are looked for at each design.
     known: Option<Known>,
-    slopes: Slopes,
     /// Most evaluations of a descent.
     pub(super) patience: u64,
 }
@@ -73,8 +71,8 @@ impl DesignObjective {
         settings: Settings,
     ) -> Self {
         let goal = goal.into();
-        let (failures, counts, known, slopes) = Default::default();
-        Self { scene, damper, variables, goal, settings, failures, counts, known, slopes, patience: u64::MAX }
+        let (failures, counts, known) = Default::default();
+        Self { scene, damper, variables, goal, settings, failures, counts, known, patience: u64::MAX }
     }
 
     /// The goal.
@@ -166,8 +164,8 @@ impl DesignObjective {
     /// The peaks of the `runs` of [`Self::height_and_runs`], with their derivatives.
     pub fn pieces(&self, design: &[f64], runs: &[Run]) -> Vec<Piece> {
         let scene = self.scene(design).ok();
-        let by = (self.variables.as_slice(), self.slopes);
-        scene.map_or_else(Vec::new, |scene| self.goal.pieces(&scene, &self.settings, runs, by))
+        let pieces = |scene| self.goal.pieces(&scene, &self.settings, runs, &self.variables);
+        scene.map_or_else(Vec::new, pieces)
     }
 
     /// Counts a value that [`Self::value`] returned in an earlier run of the same search, so that [`Self::counts`] are those of an
@@ -188,12 +186,6 @@ impl DesignObjective {
     #[must_use]
     pub fn following(self) -> Self {
         Self { known: Some(Known::default()), ..self }
-    }
-
-    /// The same with derivatives of its [pieces](Self::pieces) by another way.
-    #[must_use]
-    pub fn sloping(self, slopes: Slopes) -> Self {
-        Self { slopes, ..self }
     }
 
     /// The same whose [descents](Self::descend) end after so many evaluations.

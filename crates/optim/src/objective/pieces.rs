@@ -3,9 +3,6 @@
 //!
 //! At a peak the derivative by the frequency is zero, and at an end of the band the frequency is held, so that the derivatives of a peak are
 //! those of the run at its frequency (the envelope theorem). Those of a steady response are in closed form.
-//!
-//! Exact derivatives through a contact with loss follow it step by step, which takes a hundred times as long as its run. A search that is to
-//! take seconds has those of its peaks by [differences](Slopes::Differences) instead.
 
 use super::band::Band;
 use super::evaluation::{Place, Run};
@@ -14,7 +11,7 @@ use super::spec::{Goal, Objective, Response};
 use crate::search::minimax::Piece;
 use rayon::prelude::*;
 use retune_model::{Coupled, Measure, Parameter, Scene, Worst};
-use retune_solver::{Also, Ask, Settings, Window, extremes, gradients};
+use retune_solver::{Ask, Settings, Window, extremes_by};
 
 /// A peak below this share of the largest of its kind cannot soon be the largest.
 const HIGH: f64 = 0.7;
@@ -22,19 +19,6 @@ const HIGH: f64 = 0.7;
 const MOST: usize = 12;
 /// Peaks as near as this, as a share of the frequency, are one, which its search met twice.
 const APART: f64 = 1e-5;
-
-/// How the derivatives of the peaks of runs are found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Slopes {
-    /// Exactly, along the run.
-    #[default]
-    Exact,
-    /// By one more run for each parameter, at the frequency of the peak.
-    Differences,
-}
-
-/// The step of a difference, as a share of the parameter; of a gap as a share of both gaps, since one may be zero. Runs are exact to about 1e-10.
-const STEP: f64 = 1e-6;
 
 /// What a piece is of: a measure in a window, and its limit.
 type Kind = (Measure, Window, Option<f64>);
@@ -58,7 +42,7 @@ impl Goal {
         scene: &Scene,
         settings: &Settings,
         runs: &[Run],
-        (variables, slopes): (&[Parameter], Slopes),
+        variables: &[Parameter],
     ) -> Vec<Piece> {
         let also = self.limits.also();
         let whole = Window { from: also.map_or(0.0, |also| also.from), to: self.window.to };
@@ -66,20 +50,13 @@ impl Goal {
         let limited = limited.map(|measure| (measure, whole, self.limits.get(Limit::Of(measure))));
         let kinds = [(self.objective.quantity(), self.window, None)].into_iter().chain(limited);
         let peaks: Vec<_> = kinds
-            .flat_map(|kind @ (measure, _, limit)| {
-                let value = |run: &Run| match limit {
-                    None => run.place.largest,
-                    Some(_) => run.reached.get(measure),
-                };
-                peaks(runs, value).into_iter().map(move |run| (kind, run))
-            })
+            .flat_map(|kind| peaks(runs, |run| value(run, kind)).into_iter().map(move |run| (kind, run)))
             .collect();
         let piece = |&(kind @ (measure, window, limit), run): &(Kind, &Run)| {
-            let Place { scene: Scene { primary, forcing, damper: Some(damper) }, .. } = &run.place else {
-                return Vec::new();
-            };
-            let system = Coupled::new(primary, forcing, damper);
+            let Place { scene, phase, .. } = &run.place;
+            let Scene { primary, forcing, damper: Some(damper) } = scene else { return Vec::new() };
             let found: Vec<(f64, Vec<f64>)> = if self.objective.response == Response::Steady {
+                let system = Coupled::new(primary, forcing, damper);
                 let omega = forcing.frequency.get();
                 let band = self.objective.omega.map_or([omega; 2], |band| {
                     let Band { from, to, .. } = band.of(primary);
@@ -88,11 +65,10 @@ impl Goal {
                 let peaks = system.steady_peaks(measure, band, HIGH).into_iter();
                 let by = |at| variables.iter().map(|&by| system.steady_by(measure, by, at)).collect();
                 peaks.map(|Worst { value, frequency }| (value, by(frequency))).collect()
-            } else if slopes == Slopes::Differences {
-                differences(run, kind, settings, variables).into_iter().collect()
             } else {
-                let found = gradients(&system, window, settings, measure, variables).unwrap_or_default();
-                found.into_iter().map(|found| (found.at.value, found.by)).collect()
+                let ask = Ask { measure, phase: *phase, ..Ask::default() };
+                let by = extremes_by(scene, window, settings, ask, variables).ok();
+                by.map(|by| (value(run, kind), by)).into_iter().collect()
             };
             let piece = |value: f64, by: Vec<f64>| match limit {
                 None => Piece { is_limit: false, value, slope: by },
@@ -117,30 +93,9 @@ impl Goal {
     }
 }
 
-/// The value of a run, with its derivatives by one-sided differences; none where a neighbour cannot be run.
-fn differences(
-    run: &Run,
-    (measure, window, limit): Kind,
-    settings: &Settings,
-    variables: &[Parameter],
-) -> Option<(f64, Vec<f64>)> {
-    let Place { scene, phase, .. } = run.place;
-    let damper = scene.damper?;
-    let gaps = damper.rest_distance.get() + damper.clearance.get();
-    let also = limit.map(|_| Also { measures: [measure].into_iter().collect(), from: window.from });
-    let value = |scene: &Scene| {
-        let found = extremes(scene, window, settings, Ask { measure, phase, also, ..Ask::default() }).ok()?;
-        Some(if limit.is_some() { found.reached.get(measure) } else { found.largest.value })
-    };
-    let own = if limit.is_some() { run.reached.get(measure) } else { run.place.largest };
-    let by = |&by: &Parameter| {
-        let here = by.get(&damper);
-        let there = here + STEP * if by.is_gap() { gaps } else { here };
-        let mut moved = damper;
-        by.set_damper(&mut moved, there).ok()?;
-        Some((value(&Scene { damper: Some(moved), ..scene })? - own) / (there - here))
-    };
-    Some((own, variables.iter().map(by).collect::<Option<_>>()?))
+/// The value of a run of a kind of piece.
+fn value(run: &Run, (measure, _, limit): Kind) -> f64 {
+    if limit.is_some() { run.reached.get(measure) } else { run.place.largest }
 }
 
 /// The highest peaks of a quantity over the frequencies at each stiffness and restitution, highest first.

@@ -3,7 +3,7 @@
 use retune_model::{Measure, NonNegative, Positive};
 use retune_optim::{
     Bounds, DesignObjective, FrequencyBand, Goal, Limit, Limits, Objective, Parameter, Piece, Response,
-    Scale, Side, Slopes, Space, minimax,
+    Scale, Side, Space, minimax,
 };
 use retune_solver::{Settings, Window};
 use retune_testkit::scenes::TMD;
@@ -99,27 +99,6 @@ fn exact_steady_slopes_are_differences_of_the_closed_form() {
             let difference = (beside[0][number].value - beside[1][number].value) / (2.0 * step);
             let error = (piece.slope[i] - difference).abs() * own / (1.0 + piece.value.abs());
             assert!(error < 1e-5, "parameter {i} of piece {number}: {} {difference}", piece.slope[i]);
-        }
-    }
-}
-
-/// Slopes by one run more for each parameter, beside those along the run, of energy and stroke.
-#[test]
-fn reference_slopes_by_differences_are_those_along_the_run() {
-    let limits = Limits::default().with(Limit::Of(Measure::Stroke), positive(0.3));
-    let limits = limits.since(NonNegative::new(50.0).ok());
-    let (exact, other) = (objective(limits), objective(limits).sloping(Slopes::Differences));
-    let (_, runs) = exact.height_and_runs(&STRIKES, f64::INFINITY);
-    let [exact, other] = [exact, other].map(|of| of.pieces(&STRIKES, &runs));
-    // The first is that of the largest; where it is reached in several periods at once each has its own along the run.
-    for is_limit in [false, true] {
-        let first = |pieces: &[Piece]| pieces.iter().find(|piece| piece.is_limit == is_limit).cloned();
-        let [own, other] = [&exact, &other].map(|pieces| first(pieces).expect("a peak"));
-        assert!((other.value - own.value).abs() < 1e-9 * (1.0 + own.value.abs()), "{own:?} {other:?}");
-        for (i, at) in STRIKES.iter().enumerate() {
-            let size = if i < 2 { *at } else { STRIKES[3] };
-            let error = (other.slope[i] - own.slope[i]).abs() * size / (1.0 + own.value.abs());
-            assert!(error < 1e-4, "parameter {i}: {own:?} {other:?}");
         }
     }
 }

@@ -2,62 +2,14 @@
 
 use super::observer::{Tangent, Transition};
 use crate::error::SolverError;
-use crate::extremes::{Ask, maxima, read};
 use crate::hybrid::propagator::Motion;
 use crate::observe::observer::Unobserved;
 use crate::response::Extreme;
-use crate::run::Follower;
-use crate::settings::{Settings, Window};
 use retune_model::{Coupled, Measure, Parameter, Side};
-use std::f64::consts::TAU;
-
-/// Maxima as near as this share to the largest are ties: each has a gradient of its own.
-const TIE: f64 = 1e-9;
 
 /// A maximum is flat, so that its time has half of its digits; the derivatives are not flat. Times are corrected by at most this, s: what is
 /// farther from a place of slope zero is no smooth maximum but an end of the window.
 const LATE: f64 = 1e-5;
-
-/// A largest value with its derivatives.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Gradient {
-    /// The value, in the unit of the measure, and when it is reached.
-    pub at: Extreme,
-    /// Its derivatives, in the unit of the measure per SI unit of each parameter.
-    pub by: Vec<f64>,
-}
-
-/// The largest value of a measure over a window of the run from its start at t = 0, with its derivatives by parameters. Where maxima of one
-/// height are reached in several periods of the force, each has its gradient: the largest value then has a kink, and these span it. The
-/// first is that of the largest.
-///
-/// # Errors
-/// [`SolverError`] with the time reached.
-pub fn gradients(
-    system: &Coupled,
-    window: Window,
-    settings: &Settings,
-    measure: Measure,
-    parameters: &[Parameter],
-) -> Result<Vec<Gradient>, SolverError> {
-    let start = Motion::start(system);
-    let period = TAU / system.bare().frequency();
-    let mut follower = Follower::new(system, settings, window.to);
-    let mut now = follower.propagate(start, window.from, &mut Unobserved)?;
-    let mut peaks: Vec<Extreme> = Vec::new();
-    let count = ((window.to - window.from) / period).ceil().max(1.0);
-    for k in 1..=count as usize {
-        let end = if k as f64 == count { window.to } else { window.from + k as f64 * period };
-        let mut seen = maxima(system, Ask { measure, ..Ask::default() });
-        now = follower.propagate(now, end, &mut seen)?;
-        peaks.push(read(&seen).largest);
-    }
-    peaks.sort_by(|a, b| b.value.total_cmp(&a.value));
-    let least = peaks.first().map_or(0.0, |peak| peak.value * (1.0 - TIE));
-    let mut tangent = Tangent::new(system, settings, window.to, parameters);
-    let ties = peaks.into_iter().take_while(|peak| peak.value >= least);
-    ties.map(|at| gradient_at(system, &mut tangent, window.to, measure, at, parameters)).collect()
-}
 
 /// The derivatives of a largest value that a run from its start at t = 0, until `last` (s), reaches at a known time.
 ///
@@ -70,17 +22,17 @@ pub(crate) fn gradient_at(
     measure: Measure,
     at: Extreme,
     parameters: &[Parameter],
-) -> Result<Gradient, SolverError> {
+) -> Result<Vec<f64>, SolverError> {
     let start = Motion::start(system);
     if let Some(by) = at_impact(system, tangent, last, measure, at, parameters)? {
-        return Ok(Gradient { at, by });
+        return Ok(by);
     }
     let mut found = tangent.propagate(start, at.time, &mut Unobserved)?;
     let late = lateness(system, measure, &found.end);
     if late != 0.0 && late.abs() <= LATE && at.time - late <= last {
         found = tangent.propagate(start, at.time - late, &mut Unobserved)?;
     }
-    Ok(Gradient { at, by: derivatives(system, measure, &found, parameters) })
+    Ok(derivatives(system, measure, &found, parameters))
 }
 
 /// An impact as near to the time of a largest value as this, s, is where it is reached, if the value there is the largest to this share.

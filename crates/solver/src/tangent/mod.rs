@@ -17,5 +17,4 @@ mod rigid;
 mod series;
 
 pub(crate) use gradient::gradient_at;
-pub use gradient::{Gradient, gradients};
 pub use observer::{Tangent, Transition};

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use retune_model::{Coupled, Measure, Parameter};
 use retune_solver::observe::Unobserved;
 use retune_solver::{
-    Also, Ask, Follower, Motion, Phase, Settings, Tangent, Transition, Window, extremes, gradients,
+    Also, Ask, Follower, Motion, Phase, Settings, Tangent, Transition, Window, extremes, extremes_by,
 };
 use retune_testkit::scenes::{Numbers, SSVI, Spread, TMD, TWO_SIDED};
 use std::f64::consts::TAU;
@@ -218,14 +218,13 @@ fn reference_gradients_of_largest_values_agree_with_differences() {
     // How many derivatives are compared, and the largest error of them.
     let compare = |numbers: &Numbers, measure: Measure| -> (usize, f64) {
         let (mut compared, mut worst) = (0, 0.0_f64);
-        let found = gradients(&numbers.coupled(), window, &settings(), measure, &BY).expect("a run");
-        let first = &found[0];
-        let expected = largest(numbers, measure).value;
-        assert!((first.at.value - expected).abs() <= 1e-11 * expected, "{numbers:?} {measure:?}");
-        if first.at.value == 0.0 {
+        let first = largest(numbers, measure);
+        if first.value == 0.0 {
             return (0, 0.0);
         }
-        for (by, parameter) in first.by.iter().zip(BY) {
+        let ask = Ask { measure, ..Ask::default() };
+        let found = extremes_by(&numbers.scene(), window, &settings(), ask, &BY).expect("a run");
+        for (by, parameter) in found.iter().zip(BY) {
             let share = if parameter == Parameter::R { 1e-2 } else { 2e-4 };
             let step = if parameter == Parameter::Lambda {
                 1e-3 * numbers.lambda.min(0.5)
@@ -236,12 +235,12 @@ fn reference_gradients_of_largest_values_agree_with_differences() {
                 continue;
             }
             let at = |h: f64| largest(&moved(numbers, parameter, h), measure);
-            if [-step, step].iter().any(|&h| (at(h).time - first.at.time).abs() > 0.02) {
+            if [-step, step].iter().any(|&h| (at(h).time - first.time).abs() > 0.02) {
                 continue;
             }
             let expected = richardson(step, |h| [at(h).value, 0.0, 0.0, 0.0])[0];
             // Beside the change of the value by a change of the parameter as large as itself.
-            let scale = expected.abs().max(1e-3 * first.at.value / size(numbers, parameter));
+            let scale = expected.abs().max(1e-3 * first.value / size(numbers, parameter));
             worst = worst.max((by - expected).abs() / scale);
             compared += 1;
         }
@@ -253,14 +252,17 @@ fn reference_gradients_of_largest_values_agree_with_differences() {
     assert!(compared > 5000 && worst < 1e-6, "{compared} {worst:e}");
 }
 
-/// A settled motion reaches its largest value in every period: each has a gradient, and for the derivative they agree.
+/// A settled motion reaches its largest value in every period: the derivative at any of them is that of the steady response.
 #[test]
-fn invariant_ties_are_reported() {
+fn exact_the_derivative_of_a_settled_motion_is_that_of_the_steady_one() {
     let window = Window { from: 200.0, to: 210.0 };
-    let found =
-        gradients(&TMD.coupled(), window, &settings(), Measure::Energy, &[Parameter::K2]).expect("a run");
-    assert!(found.len() >= 9, "{found:?}");
-    for tie in &found {
-        assert!((tie.by[0] / found[0].by[0] - 1.0).abs() < 1e-6, "{found:?}");
+    let by = [Parameter::K2, Parameter::C2];
+    for measure in [Measure::Energy, Measure::Displacement, Measure::Acceleration, Measure::Stroke] {
+        let ask = Ask { measure, ..Ask::default() };
+        let found = extremes_by(&TMD.scene(), window, &settings(), ask, &by).expect("a run");
+        for (found, by) in found.into_iter().zip(by) {
+            let steady = TMD.coupled().steady_by(measure, by, TMD.omega);
+            assert!((found / steady - 1.0).abs() < 1e-9, "{measure:?} {by:?}: {found} {steady}");
+        }
     }
 }
