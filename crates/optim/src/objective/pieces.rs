@@ -2,7 +2,8 @@
 //! limit, with their derivatives.
 //!
 //! At a peak the derivative by the frequency is zero, and at an end of the band the frequency is held, so that the derivatives of a peak are
-//! those of the run at its frequency (the envelope theorem). Those of a steady response are in closed form.
+//! those of the run at its frequency (the envelope theorem). Those of a steady response are in closed form, those under a pulse or a record by
+//! differences.
 
 use super::band::Band;
 use super::evaluation::{Place, Run};
@@ -11,7 +12,7 @@ use super::spec::{Goal, Objective, Response};
 use crate::search::minimax::Piece;
 use rayon::prelude::*;
 use retune_model::{Coupled, Measure, Parameter, Scene, Worst};
-use retune_solver::{Ask, Settings, Window, extremes_by};
+use retune_solver::{Also, Ask, Settings, Window, extremes, extremes_by};
 
 /// A peak below this share of the largest of its kind cannot soon be the largest.
 const HIGH: f64 = 0.7;
@@ -19,6 +20,9 @@ const HIGH: f64 = 0.7;
 const MOST: usize = 12;
 /// Peaks as near as this, as a share of the frequency, are one, which its search met twice.
 const APART: f64 = 1e-5;
+
+/// The step of a difference, as a share of the parameter; of a gap as a share of both gaps, since one may be zero. Runs are exact to about 1e-10.
+const STEP: f64 = 1e-6;
 
 /// What a piece is of: a measure in a window, and its limit.
 type Kind = (Measure, Window, Option<f64>);
@@ -67,7 +71,10 @@ impl Goal {
                 peaks.map(|Worst { value, frequency }| (value, by(frequency))).collect()
             } else {
                 let ask = Ask { measure, phase: *phase, ..Ask::default() };
-                let by = extremes_by(scene, window, settings, ask, variables).ok();
+                let by = match forcing.history() {
+                    None => extremes_by(scene, window, settings, ask, variables).ok(),
+                    Some(_) => differences(run, kind, settings, variables),
+                };
                 by.map(|by| (value(run, kind), by)).into_iter().collect()
             };
             let piece = |value: f64, by: Vec<f64>| match limit {
@@ -96,6 +103,32 @@ impl Goal {
 /// The value of a run of a kind of piece.
 fn value(run: &Run, (measure, _, limit): Kind) -> f64 {
     if limit.is_some() { run.reached.get(measure) } else { run.place.largest }
+}
+
+/// The derivatives of the value of a run by one-sided differences; none where a neighbour cannot be run.
+fn differences(
+    run: &Run,
+    kind @ (measure, window, limit): Kind,
+    settings: &Settings,
+    variables: &[Parameter],
+) -> Option<Vec<f64>> {
+    let Place { scene, phase, .. } = run.place;
+    let damper = scene.damper?;
+    let gaps = damper.rest_distance.get() + damper.clearance.get();
+    let also = limit.map(|_| Also { measures: [measure].into_iter().collect(), from: window.from });
+    let at = |scene: &Scene| {
+        let found = extremes(scene, window, settings, Ask { measure, phase, also, ..Ask::default() }).ok()?;
+        Some(if limit.is_some() { found.reached.get(measure) } else { found.largest.value })
+    };
+    let own = value(run, kind);
+    let by = |&by: &Parameter| {
+        let here = by.get(&damper);
+        let there = here + STEP * if by.is_gap() { gaps } else { here };
+        let mut moved = damper;
+        by.set_damper(&mut moved, there).ok()?;
+        Some((at(&Scene { damper: Some(moved), ..scene })? - own) / (there - here))
+    };
+    variables.iter().map(by).collect()
 }
 
 /// The highest peaks of a quantity over the frequencies at each stiffness and restitution, highest first.
