@@ -47,6 +47,7 @@ pub struct RegularisedContact {
     overdamped: bool, // whether w follows the forces (`overdamped`)
     stretch: f64,  // sign (wall - D): the spring's stretch at touch-down, towards the wall
     since: f64,    // the time at which the excitation was set
+    amplitude: f64, // a bound on the force from then on, N
     is_far: bool,  // whether the coefficients beyond the first WAVE are in use
     cos: [[f64; WAVE]; 2], // Taylor coefficients of P cos ωt and P sin ωt about that time
     sin: [[f64; WAVE]; 2],
@@ -81,6 +82,7 @@ impl Coupled {
             overdamped: false,
             stretch: side.sign() * (self.wall(side) - self.rest_distance()),
             since: 0.0,
+            amplitude: 0.0,
             is_far: false,
             cos: [[0.0; WAVE]; 2],
             sin: [[0.0; WAVE]; 2],
@@ -154,6 +156,7 @@ impl RegularisedContact {
     pub fn set_excitation(&mut self, t: f64, [cos, sin]: Excitation) {
         (self.since, self.is_far) = (t, false);
         (self.cos[0][0], self.sin[0][0]) = (cos, sin);
+        self.amplitude = if self.is_linear() { self.force[0] } else { cos.hypot(sin) };
         self.expand(1..WAVE);
     }
 
@@ -236,8 +239,7 @@ impl RegularisedContact {
 
     /// The sum of the sizes of the terms that accelerate the PS, m/s², which sets the rounding error of its acceleration.
     pub fn size_of_terms(&self, &[q, w, x1, v1, _]: &RegularisedState) -> f64 {
-        let force =
-            if self.is_linear() { self.cos[0][0].abs() } else { self.cos[0][0].hypot(self.sin[0][0]) };
+        let force = if self.is_linear() { self.cos[0][0].abs() } else { self.amplitude };
         self.primary[0] * force
             + self.primary[1] * v1.abs()
             + self.primary[2] * x1.abs()

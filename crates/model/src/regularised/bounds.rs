@@ -107,19 +107,14 @@ impl RegularisedContact {
             .restoring
             .as_deref()
             .map(|law| Stages::between(law, [shallowest, q].map(|q| self.half_square(q)), speeds));
-        Bounds { state: [q, w, x1, v1], shallowest, rates: [a1, rate], force: self.most_force(), stages }
-    }
-
-    /// A bound on the force, N.
-    fn most_force(&self) -> f64 {
-        if self.is_linear() { self.force[0] } else { self.cos[0][0].hypot(self.sin[0][0]) }
+        Bounds { state: [q, w, x1, v1], shallowest, rates: [a1, rate], force: self.amplitude, stages }
     }
 
     /// Bounds on a piece in which the speed follows the forces; `None` if it is too long for the proof.
     fn bounds_if_following(&self, h: f64, [from, to]: [&RegularisedState; 2]) -> Option<Bounds<'_>> {
         let ends: [f64; 4] = std::array::from_fn(|i| from[i].abs().max(to[i].abs()));
         let shallowest = from[0].min(to[0]);
-        let force = self.most_force();
+        let force = self.amplitude;
         let mut bounds = Bounds { state: ends, shallowest, rates: [f64::INFINITY; 2], force, stages: None };
         let mut farther = [f64::INFINITY; 2];
         for _ in 0..8 {
