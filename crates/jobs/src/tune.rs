@@ -123,7 +123,7 @@ fn tuned(
 }
 
 fn search_and_write(task: &Task, results: &Directory) -> Result<Optimum, Error> {
-    let Task { study, search, .. } = *task;
+    let Task { study, search, watch, .. } = *task;
     let surf = surf::surf(task, results)?;
     let explored = global::global(task)?;
     let on_grid = surf.as_ref().map(|surf| surf.starts(search)).unwrap_or_default();
@@ -132,7 +132,7 @@ fn search_and_write(task: &Task, results: &Directory) -> Result<Optimum, Error> 
     let mut refined = refine::refine(task, &starts, results)?;
     descent::finish(task, &mut refined)?;
     results.journal().check()?;
-    let (certificate, passed_over) = choice::choose(study, &mut refined)?;
+    let (certificate, passed_over) = choice::choose(study, &mut refined, watch)?;
     refine::write_winner(study, &refined, results)?;
     let basins = explored.as_ref().map(|found| Basins::new(task, found, &refined, on_grid));
     results.journal().check()?;

@@ -16,6 +16,7 @@ enum Kind {
     Result,
     Log,
     Warning,
+    Stage,
 }
 
 impl Record {
@@ -39,6 +40,11 @@ impl Record {
         self.of(&[Kind::Result, Kind::Log])
     }
 
+    /// The stages whose progress was told, and of how many parts each is.
+    pub fn stages(&self) -> String {
+        self.of(&[Kind::Stage])
+    }
+
     /// The warnings.
     pub fn warnings(&self) -> String {
         self.of(&[Kind::Warning])
@@ -58,7 +64,8 @@ impl Observer for Record {
     fn warn(&self, words: &str) {
         let _ = self.keep(Kind::Warning, words);
     }
-    fn progress(&self, _stage: &'static str, _count: u64) -> Box<dyn Progress> {
+    fn progress(&self, stage: &'static str, count: u64) -> Box<dyn Progress> {
+        let _ = self.keep(Kind::Stage, &format!("{stage} {count}"));
         Box::new(Silent)
     }
     fn resumable(&self) {}

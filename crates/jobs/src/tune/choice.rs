@@ -2,10 +2,10 @@
 //! little, or from other starts than rest.
 
 use super::refine::{Refined, Run};
-use crate::Error;
 use crate::amount::Amount;
 use crate::certify::{Certificate, Verdict, certify, complete, judge};
 use crate::tune::objective::worst;
+use crate::{Error, Observer};
 use retune_model::{Measure, PerVariable};
 use retune_optim::Limit;
 use retune_study::Study;
@@ -103,7 +103,11 @@ fn lightest(
 
 /// Chooses, of the ends of the refinements within 1 % of the best, one of the best verdict, of those that are robust the one with the largest
 /// margin of the force, of those the best, and of those within 0.1 % of it the one with the least contact force, then stroke. The certificate of the choice, and what it passes over. Ends are compared at the study's tolerance, whatever that of its search.
-pub(super) fn choose(study: &Study, refined: &mut Refined) -> Result<(Certificate, Vec<PassedOver>), Error> {
+pub(super) fn choose(
+    study: &Study,
+    refined: &mut Refined,
+    watch: &dyn Observer,
+) -> Result<(Certificate, Vec<PassedOver>), Error> {
     let settings = study.solver.settings();
     let value = |Run { minimum, .. }: &Run| {
         if settings == *refined.objective.settings() && !study.goal().follows_motions() {
@@ -128,8 +132,10 @@ pub(super) fn choose(study: &Study, refined: &mut Refined) -> Result<(Certificat
         Ok(Study { scene, ..study.clone() })
     };
     let as_good = order.clone();
+    let bar = watch.progress("certificates", order.len() as u64);
     for number in order {
         seen.push((number, judge(&of(number)?)?));
+        bar.inc(1);
         if seen.last().is_some_and(|(_, certificate)| certificate.is_safest()) {
             break;
         }
@@ -153,6 +159,7 @@ pub(super) fn choose(study: &Study, refined: &mut Refined) -> Result<(Certificat
     let (number, certificate) = seen.swap_remove(chosen);
     let design = of(number)?;
     let certificate = if certificate.is_whole() { complete(&design, certificate) } else { certify(&design)? };
+    bar.finish();
     refined.winner = number;
     Ok((certificate, passed))
 }

@@ -22,11 +22,16 @@ pub(super) fn finish(task: &Task, refined: &mut Refined) -> Result<(), Error> {
     let tmd = tmd(study, search);
     let starts: Vec<&[f64]> = runs.iter().map(|run| run.minimum.x.as_slice()).chain(tmd.as_deref()).collect();
     let count = runs.len();
+    let bar = watch.progress("descents", starts.len() as u64);
     let foot = |(i, start): (usize, &&[f64])| {
         let worth_it = i == count || objective.goal().has_pieces();
-        worth_it.then(|| descend(objective, search, start, journal, &format!("{place}fminsearch descent")))
+        let foot = worth_it
+            .then(|| descend(objective, search, start, journal, &format!("{place}fminsearch descent")));
+        bar.inc(1);
+        foot
     };
     let feet: Vec<Option<Foot>> = starts.par_iter().enumerate().map(foot).collect();
+    bar.finish();
     journal.check()?;
     let mut feet = feet.into_iter();
     for (run, foot) in runs.iter_mut().zip(&mut feet) {

@@ -52,18 +52,29 @@ impl Refined {
 /// Refines every start; writes `fminsearch-starts.csv` of all where there are several.
 pub(super) fn refine(task: &Task, starts: &[Vec<f64>], results: &Directory) -> Result<Refined, Error> {
     let Task { study, search, watch, .. } = *task;
-    let mut begun = 0;
+    let bar = watch.progress("fminsearch", starts.len() as u64);
+    let (mut begun, mut best) = (0, f64::INFINITY);
     let refined = each(task, starts, |number, row, design| {
-        if number > begun {
-            begun = number;
-            watch.log(&format!(
-                "\nfminsearch, start {number} of {}\n{}",
-                starts.len(),
-                log::screen_header(&search.variables, study.quantity())
-            ))?;
+        if row.value < best {
+            best = row.value;
+            bar.best(&log::worth(best, study.quantity()));
         }
-        watch.log(&log::screen(row, design))
+        let lines = || {
+            if number > begun {
+                let head = log::screen_header(&search.variables, study.quantity());
+                watch.log(&format!("\nfminsearch, start {number} of {}\n{head}", starts.len()))?;
+            }
+            watch.log(&log::screen(row, design))
+        };
+        let mut told = Ok(());
+        bar.aside(&mut || told = lines());
+        if number > begun {
+            bar.inc(u64::from(begun > 0));
+            begun = number;
+        }
+        told
     })?;
+    bar.finish();
     if refined.starts > 1 {
         let mut all = Table::named("start");
         all.columns.extend(crate::columns::table(&log::columns(&search.variables, study.quantity())).columns);

@@ -76,12 +76,13 @@ fn paper_the_log_has_the_look_of_table_1() {
 }
 
 #[test]
-fn contract_results_are_the_same_bytes_with_one_thread_and_two() {
+fn contract_results_are_the_same_bytes_with_one_thread_and_two_and_each_stage_tells_its_progress() {
     let desk = Desk::with(&tiny());
     let logs = [1, 2].map(|threads| {
         let record = Record::default();
         let request = request(&desk, "study.json", &threads.to_string());
         good(tune(&Request { threads: Some(threads), ..request }, &record));
+        assert_eq!(record.stages(), "surf 24\nfminsearch 2\ndescents 3\ncertificates 1\n");
         let said = record.all();
         said.lines().filter(|line| line.contains("E+0")).map(str::to_owned).collect::<Vec<_>>()
     });
