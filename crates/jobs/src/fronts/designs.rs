@@ -5,7 +5,7 @@
 
 use super::candidate::{Candidate, SAME, Under};
 use crate::Error;
-use crate::Silent;
+use crate::Observer;
 use crate::again::{Made, json};
 use crate::certify::{Certificate, certify};
 use crate::columns;
@@ -106,7 +106,7 @@ impl Fronts {
     }
 
     /// Certifies the designs that are furthest below the first damper under the same bound, each value once.
-    pub(super) fn certify(&self) -> Result<Vec<Certified>, Error> {
+    pub(super) fn certify(&self, watch: &dyn Observer) -> Result<Vec<Certified>, Error> {
         let mut gains: Vec<(f64, Under, &Candidate)> = Vec::new();
         let rows = self.plan.sweeps().into_iter().flat_map(|sweep| self.rows(sweep));
         for (under, design) in rows.filter(|(under, _)| under.damper > 0) {
@@ -129,7 +129,10 @@ impl Fronts {
             let file = format!("certificate-{}-{}.json", under.sweep.name(), under.bound);
             Ok(Some(Certified { under: *under, design: Candidate::clone(design), file, certificate }))
         };
-        Ok(of_each(&gains, &Silent, certified)?.into_iter().flatten().collect())
+        let bar = watch.progress("certificates", gains.len() as u64);
+        let all = of_each(&gains, &*bar, certified)?;
+        bar.finish();
+        Ok(all.into_iter().flatten().collect())
     }
 
     /// The least E1max of the first damper under a bound, J.

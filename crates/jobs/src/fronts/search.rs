@@ -11,7 +11,7 @@ use crate::rows::of_each;
 use crate::searches::Searches;
 use crate::tune::ends::Ends;
 use crate::tune::objective::{finer, worst};
-use crate::{Error, Silent};
+use crate::{Error, Observer};
 use retune_model::{Design, Measure, PerVariable, Scene};
 use retune_optim::Limit;
 use retune_study::{FrontsPlan, Optimize, Study, Sweep, bounded, clipped};
@@ -37,10 +37,10 @@ pub(super) fn search(plan: FrontsPlan, searches: &Searches) -> Result<Fronts, Er
         tasks.extend(fronts.tune(damper, searches)?);
     }
     fronts.go_down(tasks, searches)?;
-    fronts.judge()?;
+    fronts.judge(searches.watch)?;
     let bare = |(_, study): &(String, Study)| Largest::of(study, &Scene { damper: None, ..study.scene });
     fronts.none = fronts.plan.dampers.last().and_then(bare);
-    fronts.certified = fronts.certify()?;
+    fronts.certified = fronts.certify(searches.watch)?;
     Ok(fronts)
 }
 
@@ -115,7 +115,7 @@ impl Fronts {
 
     /// Looks at the best designs under each bound once more, on the finest samples, and certifies those that have no verdict, until the
     /// best by both are known.
-    fn judge(&mut self) -> Result<(), Error> {
+    fn judge(&mut self, watch: &dyn Observer) -> Result<(), Error> {
         loop {
             let rows = self.all().into_iter().filter_map(|under| Some((self.found(under)?, under)));
             let open = |design: &Candidate| design.checked.is_none() || design.verdict == CONTINUED;
@@ -125,8 +125,10 @@ impl Fronts {
             if open.is_empty() {
                 return Ok(());
             }
+            let bar = watch.progress("best designs, looked at once more", open.len() as u64);
             let judged =
-                of_each(&open, &Silent, |&(at, under)| Ok((at, self.judged(&self.designs[at], under)?)))?;
+                of_each(&open, &*bar, |&(at, under)| Ok((at, self.judged(&self.designs[at], under)?)))?;
+            bar.finish();
             judged.into_iter().for_each(|(at, design)| self.designs[at] = design);
         }
     }
@@ -136,8 +138,8 @@ impl Fronts {
         let Candidate { damper, at, e1_max, checked, .. } = design;
         if checked.is_none() {
             let study = finer(&self.plan.dampers[*damper].1, self.plan.check(), at);
-            let seen =
-                study.and_then(|study| worst(&study)).map_or(f64::INFINITY, |found| found.value.max(*e1_max));
+            let seen = study.and_then(|study| study.energy(&study.scene));
+            let seen = seen.map_or(f64::INFINITY, |seen| seen.max(*e1_max));
             return Ok(Candidate { checked: Some(seen), ..design.clone() });
         }
         let study = self.bounded(under, Vec::new())?;
