@@ -53,7 +53,7 @@ fn contract_table2_resumes_where_it_was_cut_off() {
     let desk = desk("table2.json");
     good(table2(&request(&desk, "table2.json", "whole"), &Silent));
     // In the first search, and in the second.
-    for (at, begun) in [(8, "out/ssvi"), (20, "out/tmd")] {
+    for (at, begun) in [(8, "out/ssvi"), (32, "out/tmd")] {
         cut_off(at, |watch| table2(&request(&desk, "table2.json", "out"), watch));
         assert!(desk.path(begun).join("unfinished/journal").exists(), "{at}");
         let error = refused(table2(&request(&desk, "table2.json", "out"), &Silent));

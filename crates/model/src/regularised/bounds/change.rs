@@ -48,8 +48,8 @@ struct Excursion {
     contact: f64,
 }
 
-/// How much of its growth a guess of [`RegularisedContact::change_by_rates`] may bring about by what spring and wall make of it. Measured: beyond this
-/// share guesses are seldom found, and bounds by energy cost less than the search for one.
+/// The square of half the angle (rad) by which spring and wall turn the damper in a piece beyond which [`RegularisedContact::change_by_rates`] follows
+/// no guess any further. Measured: few are confirmed there, and bounds by energy cost less than the search for one.
 const FAR: f64 = 0.3;
 
 /// The greater of two numbers, NaN if one of them is.
@@ -77,7 +77,7 @@ impl RegularisedContact {
     /// guess; the proof holds if these rates do not lead beyond the guess in `h/2`. The factor of a loss is a function of `q` and `w`, monotone in
     /// both where `w` has one sign, so that its range follows from corners: no slope of it is asked for, which has no bound where `v` vanishes.
     ///
-    /// Where spring and wall turn the damper by a third of a swing or more, a guess that fails grows faster than it is followed.
+    /// Where spring and wall turn the damper by more than about a radian, a guess that is not confirmed soon grows faster than it is followed.
     pub(super) fn change_by_rates(&self, h: f64, ends: &[End; 2]) -> Option<Change> {
         let ([q, w, x1, v1], [a1, rate]) = largest(ends);
         let slopes = [0.5 * w, q * rate, q * v1, q * a1];
