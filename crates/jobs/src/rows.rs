@@ -1,7 +1,7 @@
 //! The rows of a table that are known before any of them is computed: those of a grid, of a sweep. They are computed in parallel; what the
 //! journal knows is not computed again; a share of them can be computed on another machine (`parts`).
 
-use crate::{Error, Progress};
+use crate::{Error, Observer, Progress};
 use rayon::prelude::*;
 use retune_store::Journal;
 use std::ops::Range;
@@ -63,4 +63,19 @@ pub fn of_each<T: Sync, U: Send>(
 ) -> Result<Vec<U>, Error> {
     let made: Vec<Result<U, Error>> = all.par_iter().map(of).inspect(|_| progress.inc(1)).collect();
     made.into_iter().collect()
+}
+
+/// The same as a stage of its own, whose progress is told.
+///
+/// # Errors
+/// As [`of_each`].
+pub fn in_a_stage<T: Sync, U: Send>(
+    (watch, stage): (&dyn Observer, &'static str),
+    all: &[T],
+    of: impl Fn(&T) -> Result<U, Error> + Sync + Send,
+) -> Result<Vec<U>, Error> {
+    let bar = watch.progress(stage, all.len() as u64);
+    let made = of_each(all, &*bar, of);
+    bar.finish();
+    made
 }

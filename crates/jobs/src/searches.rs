@@ -1,7 +1,7 @@
 //! The searches that a larger job is made of, each a job of its own below the directory of the whole.
 
 use crate::observer::Quiet;
-use crate::rows::of_each;
+use crate::rows::in_a_stage;
 use crate::tune::ends::{Ends, ends};
 use crate::tune::{Optimum, optimize};
 use crate::{Error, Observer};
@@ -42,12 +42,9 @@ impl<'a> Searches<'a> {
 
     /// The ends of the searches of some studies, side by side, each with a name of its own; what each is told is not shown.
     pub fn ends_of_all(&self, all: &[(Study, String)]) -> Result<Vec<Ends>, Error> {
-        let bar = self.watch.progress("searches", all.len() as u64);
         let quiet = Quiet(self.watch);
         let search =
             |(study, name): &(Study, String)| ends(study, self.journal(), &format!("{name} "), &quiet);
-        let ends = of_each(all, &*bar, search);
-        bar.finish();
-        ends
+        in_a_stage((self.watch, "searches"), all, search)
     }
 }

@@ -82,7 +82,7 @@ impl Coupled {
             overdamped: false,
             stretch: side.sign() * (self.wall(side) - self.rest_distance()),
             since: 0.0,
-            amplitude: 0.0,
+            amplitude: bare.force_bounds()[0],
             is_far: false,
             cos: [[0.0; WAVE]; 2],
             sin: [[0.0; WAVE]; 2],

@@ -10,7 +10,7 @@ use super::candidate::{Candidate, Under};
 use super::designs::Fronts;
 use super::places::{about, on_sides, scattered, starts};
 use crate::Error;
-use crate::rows::of_each;
+use crate::rows::in_a_stage;
 use crate::searches::Searches;
 use crate::tune::descent::descend;
 use crate::tune::objective::searched;
@@ -110,12 +110,10 @@ impl Fronts {
 
     /// The ends of descents that keep a value.
     fn ends(&self, tasks: &[Task], searches: &Searches) -> Result<Vec<Candidate>, Error> {
-        let bar = searches.watch.progress("descents", tasks.len() as u64);
-        let ends = of_each(tasks, &*bar, |task| {
+        let ends = in_a_stage((searches.watch, "descents"), tasks, |task| {
             let end = task.end(self.under(task.under, Vec::new())?, searches.journal())?;
             Ok(end.and_then(|at| self.candidate(task.under.damper, at)))
         });
-        bar.finish();
         searches.journal().check()?;
         Ok(ends?.into_iter().flatten().collect())
     }

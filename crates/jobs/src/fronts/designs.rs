@@ -11,7 +11,7 @@ use crate::certify::{Certificate, certify};
 use crate::columns;
 use crate::needs::Largest;
 use crate::resolved::Resolved;
-use crate::rows::of_each;
+use crate::rows::in_a_stage;
 use crate::tune::objective::finer;
 use retune_model::{Design, Measure, Parameter};
 use retune_report::cells;
@@ -129,10 +129,7 @@ impl Fronts {
             let file = format!("certificate-{}-{}.json", under.sweep.name(), under.bound);
             Ok(Some(Certified { under: *under, design: Candidate::clone(design), file, certificate }))
         };
-        let bar = watch.progress("certificates", gains.len() as u64);
-        let all = of_each(&gains, &*bar, certified)?;
-        bar.finish();
-        Ok(all.into_iter().flatten().collect())
+        Ok(in_a_stage((watch, "certificates"), &gains, certified)?.into_iter().flatten().collect())
     }
 
     /// The least E1max of the first damper under a bound, J.

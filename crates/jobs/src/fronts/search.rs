@@ -7,7 +7,7 @@ use super::descents::Task;
 use super::designs::{Fronts, GIVEN};
 use crate::certify::judge;
 use crate::needs::Largest;
-use crate::rows::of_each;
+use crate::rows::in_a_stage;
 use crate::searches::Searches;
 use crate::tune::ends::Ends;
 use crate::tune::objective::{finer, worst};
@@ -125,10 +125,9 @@ impl Fronts {
             if open.is_empty() {
                 return Ok(());
             }
-            let bar = watch.progress("best designs, looked at once more", open.len() as u64);
+            let stage = (watch, "best designs, looked at once more");
             let judged =
-                of_each(&open, &*bar, |&(at, under)| Ok((at, self.judged(&self.designs[at], under)?)))?;
-            bar.finish();
+                in_a_stage(stage, &open, |&(at, under)| Ok((at, self.judged(&self.designs[at], under)?)))?;
             judged.into_iter().for_each(|(at, design)| self.designs[at] = design);
         }
     }

@@ -6,7 +6,7 @@ use super::measures::{Spread, at_omega, energy, near};
 use super::plan::{Plan, damper};
 use crate::Error;
 use crate::columns;
-use crate::rows::of_each;
+use crate::rows::in_a_stage;
 use crate::tune::log::{columns as log_columns, scientific};
 use rayon::prelude::*;
 use retune_dynamics::{Stretch, classify, follow};
@@ -201,9 +201,7 @@ fn protocols(plan: &Plan, item: &mut Item) -> Result<(), Error> {
             wanted.extend(BEFORE.map(|share| Protocol { radius, omega, window: window(share) }));
         }
     }
-    let bar = plan.watch.progress("table 1, protocols", wanted.len() as u64);
-    let mut all = of_each(&wanted, &*bar, |protocol| protocol.run(plan))?;
-    bar.finish();
+    let mut all = in_a_stage((plan.watch, "table 1, protocols"), &wanted, |protocol| protocol.run(plan))?;
     all.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
     let count = all.len();
     let mut table = Table::headed(

@@ -69,7 +69,7 @@ pub(super) fn refine(task: &Task, starts: &[Vec<f64>], results: &Directory) -> R
         let mut told = Ok(());
         bar.aside(&mut || told = lines());
         if number > begun {
-            bar.inc(u64::from(begun > 0));
+            bar.inc(u64::from(begun > 0)); // the start before it is done
             begun = number;
         }
         told
