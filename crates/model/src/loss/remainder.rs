@@ -11,88 +11,113 @@ use wide::f64x4;
 
 /// Terms of a polynomial.
 const TERMS: usize = 4 * few::TERMS;
-/// Where one polynomial ends and the next begins.
+/// Where one polynomial ends and the next begins, at most: halves of them, and halves of these, where r bends.
 const ENDS: [f64; 5] = [-1.0, -0.5, 0.0, 0.5, 1.0];
+/// How often one is halved at most.
+const HALVINGS: u32 = 12;
 /// A branch point beyond this is far.
 const FAR: f64 = 3.0;
 /// What the last coefficients of an interpolant to rounding are below.
 const ROUNDING: f64 = 1e-15;
+/// Polynomials that four numbers share at most, for which they are computed together.
+const TOGETHER: usize = 4;
 
 /// `r(x)`.
 #[derive(Clone, Debug)]
 pub(super) struct Remainder {
-    /// Coefficients in the variable that runs from -1 to 1 between two ends: x itself below 0, the root of the distance from the branch point
-    /// above.
-    pieces: [[[f64; few::TERMS]; 4]; 4],
+    /// Where each piece begins, in ascending order.
+    starts: Vec<f64>,
+    pieces: Vec<Piece>,
     branch: f64,
-    /// Middle and the inverse of half the length of each piece in its variable.
-    places: [[f64; 2]; 4],
-    exact: bool,
+}
+
+/// A polynomial in the variable that runs from -1 to 1 between two ends: x itself below 0, the root of the distance from the branch point above.
+#[derive(Clone, Debug)]
+struct Piece {
+    coefficients: [[f64; few::TERMS]; 4],
+    /// Middle and the inverse of half the length of the piece in its variable.
+    middle: f64,
+    scale: f64,
+    by_root: bool,
 }
 
 impl Remainder {
-    /// 1 throughout, as without loss.
-    pub const NONE: Self = {
-        let mut one = [[0.0; few::TERMS]; 4];
-        one[0][0] = 1.0;
-        Self { pieces: [one; 4], branch: FAR, places: [[0.0; 2]; 4], exact: false }
-    };
+    /// Of its values and its branch point. None where r bends too sharply for polynomials to be exact to rounding.
+    pub fn new(branch: f64, value: impl Fn(f64) -> f64) -> Option<Self> {
+        let mut table = Self { starts: Vec::new(), pieces: Vec::new(), branch: FAR.min(branch) };
+        ENDS.windows(2).all(|ends| table.fill([ends[0], ends[1]], HALVINGS, &value)).then_some(table)
+    }
 
-    /// Of its values and its branch point.
-    pub fn new(branch: f64, value: impl Fn(f64) -> f64) -> Self {
-        let mut table = Self { branch: FAR.min(branch), exact: true, ..Self::NONE };
-        for piece in 0..4 {
-            let [from, to] = [0, 1].map(|end| table.variable(piece, ENDS[piece + end]));
-            let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-            table.places[piece] = [middle, 1.0 / half];
-            let values: [f64; TERMS] = std::array::from_fn(|node| {
-                let own = middle + half * cosine(1, node);
-                value(if piece < 2 { own } else { table.branch - own * own })
-            });
-            let chebyshev: [f64; TERMS] = std::array::from_fn(|k| {
-                let sum: f64 = (0..TERMS).map(|node| values[node] * cosine(k, node)).sum();
-                sum * if k == 0 { 1.0 } else { 2.0 } / TERMS as f64
-            });
-            let last = chebyshev[TERMS - 2].abs().max(chebyshev[TERMS - 1].abs());
-            table.exact = table.exact && last < ROUNDING;
-            let powers = powers(&chebyshev);
-            table.pieces[piece] =
-                std::array::from_fn(|i| std::array::from_fn(|k| powers[few::TERMS * i + k]));
+    /// Adds the pieces between two ends; whether they are exact.
+    fn fill(&mut self, [from, to]: [f64; 2], halvings: u32, value: &impl Fn(f64) -> f64) -> bool {
+        let by_root = from >= 0.0;
+        if let Some(piece) = Piece::new([from, to].map(|x| self.variable(by_root, x)), |own| {
+            value(if by_root { self.branch - own * own } else { own })
+        }) {
+            self.starts.push(from);
+            self.pieces.push(Piece { by_root, ..piece });
+            return true;
         }
-        table
+        let middle = 0.5 * (from + to);
+        halvings > 0
+            && self.fill([from, middle], halvings - 1, value)
+            && self.fill([middle, to], halvings - 1, value)
     }
 
-    fn variable(&self, piece: usize, x: f64) -> f64 {
-        if piece < 2 { x } else { (self.branch - x).sqrt() }
+    #[inline(always)]
+    fn variable(&self, by_root: bool, x: f64) -> f64 {
+        if by_root { (self.branch - x).sqrt() } else { x }
     }
 
-    /// Whether [`Self::at`] is exact to rounding: of restitutions of 0.3 and above.
-    pub fn is_exact(&self) -> bool {
-        self.exact
+    /// The number of the piece that holds for an x; the first, too, beyond lift-off.
+    #[inline(always)]
+    fn place(&self, x: f64) -> usize {
+        self.starts.iter().skip(1).map(|start| usize::from(x >= *start)).sum()
     }
 
     /// r.
     #[inline]
     pub fn at(&self, x: f64) -> f64 {
-        let piece = piece(x);
-        let [middle, scale] = self.places[piece];
-        let t = (self.variable(piece, x) - middle) * scale;
-        sum(&self.pieces[piece], t)
+        let piece = &self.pieces[self.place(x)];
+        let t = (self.variable(piece.by_root, x) - piece.middle) * piece.scale;
+        sum(&piece.coefficients, t)
     }
 
     /// The same, bit by bit, of four x at once: of each polynomial that one of them needs.
     pub fn at_four(&self, x: f64x4) -> f64x4 {
-        let pieces = x.to_array().map(piece);
-        let (first, last) = pieces.iter().fold((3, 0), |(a, b), &piece| (piece.min(a), piece.max(b)));
+        let places = x.to_array().map(|x| self.place(x));
+        let (first, last) =
+            places.iter().fold((usize::MAX, 0), |(a, b), &place| (place.min(a), place.max(b)));
+        if last - first >= TOGETHER {
+            return f64x4::new(x.to_array().map(|x| self.at(x)));
+        }
         let mut all = f64x4::ZERO;
-        for piece in first..=last {
-            let [middle, scale] = self.places[piece];
-            let variable = if piece < 2 { x } else { (f64x4::splat(self.branch) - x).sqrt() };
-            let t = (variable - middle) * scale;
-            let here = sum(&self.pieces[piece], t);
-            all = if piece == first { here } else { x.simd_ge(f64x4::splat(ENDS[piece])).select(here, all) };
+        for place in first..=last {
+            let Piece { coefficients, middle, scale, by_root } = &self.pieces[place];
+            let variable = if *by_root { (f64x4::splat(self.branch) - x).sqrt() } else { x };
+            let here = sum(coefficients, (variable - *middle) * *scale);
+            let start = f64x4::splat(self.starts[place]);
+            all = if place == first { here } else { x.simd_ge(start).select(here, all) };
         }
         all
+    }
+}
+
+impl Piece {
+    /// Of the values of its variable between two ends; none where it is not exact to rounding.
+    fn new([from, to]: [f64; 2], value: impl Fn(f64) -> f64) -> Option<Self> {
+        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+        let values: [f64; TERMS] = std::array::from_fn(|node| value(middle + half * cosine(1, node)));
+        let chebyshev: [f64; TERMS] = std::array::from_fn(|k| {
+            let sum: f64 = (0..TERMS).map(|node| values[node] * cosine(k, node)).sum();
+            sum * if k == 0 { 1.0 } else { 2.0 } / TERMS as f64
+        });
+        if chebyshev[TERMS - 2].abs().max(chebyshev[TERMS - 1].abs()) >= ROUNDING {
+            return None;
+        }
+        let powers = powers(&chebyshev);
+        let coefficients = std::array::from_fn(|i| std::array::from_fn(|k| powers[few::TERMS * i + k]));
+        Some(Self { coefficients, middle, scale: 1.0 / half, by_root: false })
     }
 }
 
@@ -103,11 +128,6 @@ fn sum<T: Number>(pieces: &[[f64; few::TERMS]; 4], t: T) -> T {
     let t2 = t * t;
     let t8 = (t2 * t2) * (t2 * t2);
     (a + t8 * b) + (t8 * t8) * (c + t8 * d)
-}
-
-/// The polynomial for an x.
-fn piece(x: f64) -> usize {
-    usize::from(x >= ENDS[1]) + usize::from(x >= ENDS[2]) + usize::from(x >= ENDS[3])
 }
 
 /// Chebyshev's polynomial of an order at a node; multiples of whole turns are left out exactly.

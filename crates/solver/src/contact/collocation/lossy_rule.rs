@@ -15,6 +15,9 @@ use wide::f64x4;
 /// Rules by the restitutions.
 static RESTORING: Kept<LossyRules> = Kept::new();
 
+/// The least restitution whose contacts are computed at once.
+const LEAST: f64 = 0.3;
+
 /// The χ whose undisturbed collisions are kept of the law of Hunt and Crossley: multiples of this, up to a restitution of 0.37.
 const STEP: f64 = 0.1;
 const STEPS: usize = 18;
@@ -89,10 +92,10 @@ pub enum Loss {
 }
 
 impl Loss {
-    /// Of equations; none without loss, and for restitutions below 0.3, which have no tables.
+    /// Of equations; none without loss, and for restitutions below 0.3, to which [`kink`] and [`tail`] do not reach.
     pub fn of(equations: &RegularisedContact) -> Option<Self> {
         match equations.restoring() {
-            Some(law) if law.is_tabulated() => {
+            Some(law) if law.restitution() >= LEAST => {
                 Some(Self::Restoring(LossyRules::restoring(law), UnitLaw::Restoring(Arc::clone(law))))
             }
             Some(_) => None,

@@ -89,7 +89,7 @@ impl Segment<4> for Piece<'_> {
     }
     /// Measured by `just lab hunt-durations`: the law of a restitution enters forces and bounds, without polynomials by an iteration.
     fn cost(&self) -> u64 {
-        self.equations.restoring().map_or(1, |law| if law.is_tabulated() { 3 } else { 4 })
+        self.equations.restoring().map_or(1, |law| if law.is_tabulated() { 3 } else { 12 })
     }
     fn quintic_error(&self, form: &Form<4>, ends: [&Knot<4>; 2], h: f64, _sharp: bool) -> Option<f64> {
         let bound = || self.growth(form, ends, h);
