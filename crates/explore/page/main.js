@@ -228,8 +228,8 @@ function paint(motion) {
 function rest() {
     resting = false;
     figures.motion(latest, omega());
-    const P = controls().find(({ name }) => ["P", "imbalance", "base", "base_acceleration"].includes(name));
-    drawing.show(latest, { damper: place.damper, P: P ? value(P) : 0 });
+    const size = controls().find(({ amplitude }) => amplitude);
+    drawing.show(latest, { damper: place.damper, P: size ? value(size) : 0 });
     $("phase-2-figure").hidden = place.damper === "none";
     points(latest.columns, latest);
 }

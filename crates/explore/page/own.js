@@ -1,7 +1,5 @@
 // The form of a structure of one's own: typed with units, as `retune design` reads them.
 
-const PLACEHOLDERS = { force: "280 N", imbalance: "0.02 kg·m", base: "1 mm", base_acceleration: "0.1 g" };
-
 // The fields as a file of `retune design` has them: limits, "x1max = 2 mm, stroke = 15 mm", each by its name.
 export function sent({ limits, ...structure }) {
     if (!limits) return structure;
@@ -15,7 +13,7 @@ export class Own {
         Object.assign(this, { details, problem });
         this.form = details.querySelector("form");
         const { by, size } = this.form.elements;
-        by.addEventListener("change", () => (size.placeholder = PLACEHOLDERS[by.value]));
+        by.addEventListener("change", () => (size.placeholder = by.selectedOptions[0].dataset.example));
         this.form.addEventListener("submit", (event) => {
             event.preventDefault();
             this.refuse(null);
@@ -29,9 +27,14 @@ export class Own {
 
     // Fills the form with a structure.
     show(structure) {
-        const by = Object.keys(PLACEHOLDERS).find((name) => name in structure) ?? "force";
+        const by = this.forcings().find((name) => name in structure) ?? "force";
         this.form.elements.by.value = by;
         for (const input of this.form.querySelectorAll("input")) input.value = structure[input.name === "size" ? by : input.name] ?? "";
+    }
+
+    // What may move it, by the names of the fields.
+    forcings() {
+        return Array.from(this.form.elements.by.options, (option) => option.value);
     }
 
     // Tells what is wrong, and marks its field; null takes that away.
@@ -40,7 +43,7 @@ export class Own {
         this.problem.textContent = words ?? "";
         if (words) this.details.open = true;
         for (const input of this.form.querySelectorAll("input")) {
-            const own = input.name === "size" ? field in PLACEHOLDERS : input.name === field?.split(".")[0];
+            const own = input.name === "size" ? this.forcings().includes(field) : input.name === field?.split(".")[0];
             input.setAttribute("aria-invalid", String(own));
         }
     }

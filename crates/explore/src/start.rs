@@ -53,6 +53,8 @@ pub struct Control {
     pub bounds: [Option<f64>; 2],
     /// Whether it is of walls and contacts, which few turn.
     pub of_contact: bool,
+    /// Whether it is the size of what moves the structure.
+    pub amplitude: bool,
     /// The dampers that have it.
     pub dampers: &'static [DamperKind],
 }
@@ -271,6 +273,7 @@ impl Start {
                 log,
                 bounds: self.bounds(parameter),
                 of_contact: parameter.is_of_contact(),
+                amplitude: Parameter::AMPLITUDES.contains(&parameter),
                 dampers: dampers(parameter),
             })
         };

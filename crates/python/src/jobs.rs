@@ -203,6 +203,12 @@ pub fn parameters() -> Vec<(&'static str, &'static str, &'static str)> {
     Parameter::ALL.map(|one| (one.symbol(), one.unit(), one.words())).to_vec()
 }
 
+/// The symbols of the sizes of harmonic forcings, by which a study has them.
+#[pyfunction]
+pub fn amplitudes() -> Vec<&'static str> {
+    Parameter::AMPLITUDES.map(Parameter::symbol).to_vec()
+}
+
 /// How many SI units a unit of what is given in time is; the SI unit if none is named.
 #[pyfunction]
 #[pyo3(signature = (of, unit = None))]

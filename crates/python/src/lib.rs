@@ -30,8 +30,8 @@ mod _core {
     use crate::files::job;
     #[pymodule_export]
     use crate::jobs::{
-        branches, certify, contact, design_study, history_unit, optimize, parameters, prove, study_text,
-        typed, verify,
+        amplitudes, branches, certify, contact, design_study, history_unit, optimize, parameters, prove,
+        study_text, typed, verify,
     };
     #[pymodule_export]
     use crate::motion::{run, sweep};

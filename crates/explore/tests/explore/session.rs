@@ -353,6 +353,9 @@ fn contract_every_parameter_of_the_scene_can_be_turned() {
             assert!(found.is_ok(), "{} = {value}: {:?}", control.name, found.err());
         }
     }
+    let sizes: Vec<_> =
+        controls.iter().filter(|control| control.amplitude).map(|control| control.name).collect();
+    assert_eq!(sizes, ["P"]);
     let k2 = controls.iter().find(|control| control.name == "k2").expect("a control");
     assert_eq!((k2.bounds, k2.of_contact), ([Some(10.0), Some(600.0)], false));
     assert!(

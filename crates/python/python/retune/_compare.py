@@ -20,10 +20,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-# What moves a structure at a frequency, by the fields of `scene.forcing`.
-HARMONIC = ("P", "imbalance", "base", "base_acceleration")
-
-
 class Comparison:
     """Dampers that were each tuned for the same problem, the best first."""
 
@@ -138,11 +134,12 @@ def _designed(problem: Problem, study: dict[str, Any], damper: TMD | SSVI, missi
     """The study with which `retune design` would tune a damper of this mass."""
     scene = study["scene"]
     forcing = scene["forcing"]
-    by = next((name for name in HARMONIC if name in forcing), None)
+    harmonic = _core.amplitudes()
+    by = next((name for name in harmonic if name in forcing), None)
     if by is None:
         first = missing[0]
         raise StudyError(
-            f"damper.{first}: missing, and only for a forcing with a frequency ({', '.join(HARMONIC)}) it is found from the structure: "
+            f"damper.{first}: missing, and only for a forcing with a frequency ({', '.join(harmonic)}) it is found from the structure: "
             f"give {', '.join(missing)}",
             f"damper.{first}",
         )
