@@ -113,6 +113,29 @@ pub fn cut_off<T>(at: u64, job: impl FnOnce(&dyn Observer) -> Result<T, Error>) 
     assert!(ended.is_err(), "the job has fewer moments than {at}: {ended:?}");
 }
 
+/// Ends a job where a stage begins.
+struct CutBefore(&'static str, AtomicU64);
+
+impl Observer for CutBefore {
+    fn progress(&self, stage: &'static str, _count: u64) -> Box<dyn Progress> {
+        if stage == self.0 && self.1.fetch_sub(1, Relaxed) == 1 {
+            resume_unwind(Box::new("cut off"));
+        }
+        Box::new(Silent)
+    }
+}
+
+/// Begins a job and cuts it off where it begins a stage for the `times`-th time.
+#[track_caller]
+pub fn cut_off_before<T>(
+    (stage, times): (&'static str, u64),
+    job: impl FnOnce(&dyn Observer) -> Result<T, Error>,
+) {
+    let watch = CutBefore(stage, AtomicU64::new(times));
+    let ended = catch_unwind(AssertUnwindSafe(|| job(&watch).map(drop)));
+    assert!(ended.is_err(), "{stage} does not begin {times} times: {ended:?}");
+}
+
 /// The error of a job that must be refused.
 #[track_caller]
 pub fn refused<T>(result: Result<T, Error>) -> Error {

@@ -5,15 +5,16 @@
 use super::candidate::{CONTINUED, Candidate, Under, at_most, by_excess};
 use super::descents::Task;
 use super::designs::{Fronts, GIVEN};
+use crate::Error;
 use crate::certify::judge;
 use crate::needs::Largest;
 use crate::rows::in_a_stage;
 use crate::searches::Searches;
 use crate::tune::ends::Ends;
 use crate::tune::objective::{finer, worst};
-use crate::{Error, Observer};
-use retune_model::{Design, Measure, PerVariable, Scene};
+use retune_model::{Design, Measure, Parameter, PerVariable, Scene};
 use retune_optim::Limit;
+use retune_store::Journal;
 use retune_study::{FrontsPlan, Optimize, Study, Sweep, bounded, clipped};
 
 /// A search keeps this much below a limit, for between its samples a stroke or a force may be a little larger.
@@ -37,7 +38,7 @@ pub(super) fn search(plan: FrontsPlan, searches: &Searches) -> Result<Fronts, Er
         tasks.extend(fronts.tune(damper, searches)?);
     }
     fronts.go_down(tasks, searches)?;
-    fronts.judge(searches.watch)?;
+    fronts.judge(searches)?;
     let bare = |(_, study): &(String, Study)| Largest::of(study, &Scene { damper: None, ..study.scene });
     fronts.none = fronts.plan.dampers.last().and_then(bare);
     fronts.certified = fronts.certify(searches.watch)?;
@@ -115,7 +116,7 @@ impl Fronts {
 
     /// Looks at the best designs under each bound once more, on the finest samples, and certifies those that have no verdict, until the
     /// best by both are known.
-    fn judge(&mut self, watch: &dyn Observer) -> Result<(), Error> {
+    fn judge(&mut self, searches: &Searches) -> Result<(), Error> {
         loop {
             let rows = self.all().into_iter().filter_map(|under| Some((self.found(under)?, under)));
             let open = |design: &Candidate| design.checked.is_none() || design.verdict == CONTINUED;
@@ -125,20 +126,27 @@ impl Fronts {
             if open.is_empty() {
                 return Ok(());
             }
-            let stage = (watch, "best designs, looked at once more");
-            let judged =
-                in_a_stage(stage, &open, |&(at, under)| Ok((at, self.judged(&self.designs[at], under)?)))?;
+            let stage = (searches.watch, "best designs, looked at once more");
+            let judged = |&(at, under): &(usize, Under)| {
+                Ok((at, self.judged(&self.designs[at], under, searches.journal())?))
+            };
+            let judged = in_a_stage(stage, &open, judged)?;
+            searches.journal().check()?;
             judged.into_iter().for_each(|(at, design)| self.designs[at] = design);
         }
     }
 
     /// A design looked at on the finest samples; or, where that is done, with the verdict of its certificate.
-    fn judged(&self, design: &Candidate, under: Under) -> Result<Candidate, Error> {
+    fn judged(&self, design: &Candidate, under: Under, journal: &Journal) -> Result<Candidate, Error> {
         let Candidate { damper, at, e1_max, checked, .. } = design;
         if checked.is_none() {
-            let study = finer(&self.plan.dampers[*damper].1, self.plan.check(), at);
-            let seen = study.and_then(|study| study.energy(&study.scene));
-            let seen = seen.map_or(f64::INFINITY, |seen| seen.max(*e1_max));
+            let seen = || {
+                let study = finer(&self.plan.dampers[*damper].1, self.plan.check(), at);
+                study.and_then(|study| study.energy(&study.scene)).unwrap_or(f64::INFINITY)
+            };
+            let numbers = Parameter::VARIED.map(|parameter| at.get(parameter));
+            let seen = journal.value(&format!("{damper} checked"), &numbers, f64::INFINITY, seen, |_| ());
+            let seen = seen.max(*e1_max);
             return Ok(Candidate { checked: Some(seen), ..design.clone() });
         }
         let study = self.bounded(under, Vec::new())?;

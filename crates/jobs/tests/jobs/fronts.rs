@@ -1,12 +1,12 @@
 //! Pareto fronts of dampers: the least E1max under bounds on the spring and on the stroke.
 
-use crate::request;
+use crate::{request, resume};
 use retune_jobs::describe;
 use retune_jobs::fronts::fronts;
 use retune_jobs::{Error, Request, Silent};
 use retune_study::{Rule, StudyError};
-use retune_testkit::desk::{Desk, committed};
-use retune_testkit::observers::{good, refused};
+use retune_testkit::desk::{Desk, committed, count_lines};
+use retune_testkit::observers::{cut_off_before, good, refused};
 use serde_json::json;
 
 /// A study of fronts with searches of a few runs.
@@ -97,6 +97,27 @@ fn invariant_a_looser_bound_is_never_worse_and_each_is_kept() {
 
     good(fronts(&Request { threads: Some(2), ..request(&desk, "fronts.json", "two") }, &Silent));
     desk.assert_same("out", "two");
+}
+
+/// A small front, cut off before its best designs are looked at on the finest samples, and after: what was seen there is kept.
+#[test]
+fn contract_fronts_that_are_cut_off_resume_and_end_in_the_same_bytes() {
+    let desk = desk();
+    let mut plan = desk.read_json("fronts.json");
+    for (field, value) in [("k2", json!([100])), ("stroke", json!([])), ("contact_force", json!([]))] {
+        plan[field] = value;
+    }
+    desk.write_json("fronts.json", &plan);
+    good(fronts(&request(&desk, "fronts.json", "whole"), &Silent));
+    let kept = [1, 2].map(|times| {
+        let stage = ("best designs, looked at once more", times);
+        let out = format!("cut-{times}");
+        cut_off_before(stage, |watch| fronts(&request(&desk, "fronts.json", &out), watch));
+        count_lines(&desk.path(&out).join("unfinished/journal"))
+    });
+    assert_eq!(kept[1], kept[0] + 2, "a line for each damper");
+    good(fronts(&resume(&desk, "fronts.json", "cut-2"), &Silent));
+    desk.assert_same("whole", "cut-2");
 }
 
 /// No search comes to a spring as soft as this, so nothing dominates the design.
