@@ -2,8 +2,8 @@
 
 cargo-mutants makes the mutants; which of them are drawn follows from the seed and from what they change, not from the lines that they
 stand on, so that a draw stays nearly the same when code moves. Those of each crate are built in a copy of the project inside
-`target/mutants`, where a mutant that was caught is remembered until its file changes: a pass that was stopped goes on, and passes over
-different crates (`--package`) may run at once. A survivor whose name stands in `tests/mutants.json` changes nothing, for the reason
+`target/mutants`. What became of a mutant is remembered in `results/robustness/mutants` until its file changes: a pass that was stopped goes
+on, on any machine, and passes over different crates (`--package`) may run at once. A survivor whose name stands in `tests/mutants.json` changes nothing, for the reason
 given there.
 """
 
@@ -26,6 +26,7 @@ CRATES = {
 HOME = pathlib.Path("target/mutants")
 REASONS = pathlib.Path("tests/mutants.json")
 TABLE = pathlib.Path("results/robustness/mutants.md")
+KNOWN = pathlib.Path("results/robustness/mutants")
 
 
 @functools.cache
@@ -143,7 +144,7 @@ def main():
     outcomes = {}
     print(f"seed {asked.seed}: " + ", ".join(f"{len(mutants)} mutants of {package}" for package, mutants in draw.items()), flush=True)
     for package, mutants in draw.items():
-        remembered = HOME / package / "outcomes.json"
+        remembered = KNOWN / f"{package}.json"
         known = json.loads(remembered.read_text()) if remembered.exists() else {}
         by_name = {m[1]: m for m in mutants}
         for name, outcome in ended(package).items():
@@ -167,7 +168,8 @@ def main():
                 for name, outcome in found.items():
                     outcomes[left[name][0]] = outcome
                     known[left[name][0]] = (digest(left[name][2]), outcome)
-                remembered.write_text(json.dumps(known, indent=0))
+                KNOWN.mkdir(exist_ok=True)
+                remembered.write_text(json.dumps(known, indent=0, sort_keys=True) + "\n")
             left = {name: m for name, m in left.items() if outcomes.get(m[0]) == "missed"}
     if not asked.list:
         TABLE.write_text(table(asked.seed, draw, outcomes, reasons))

@@ -89,15 +89,6 @@ impl Coupled {
     ) -> [f64; 2] {
         let &[x1, v1, x2, v2] = y;
         let (m1, (m2, k2, _)) = (self.bare().mass(), self.damper());
-        match parameter {
-            Parameter::K1 => return [-x1 / m1, 0.0],
-            Parameter::C1 => return [-v1 / m1, 0.0],
-            Parameter::M2 => {
-                let [_, _, _, acceleration] = self.derivative_under([0.0; 2], y, contact);
-                return [0.0, -acceleration / m2];
-            }
-            _ => {}
-        }
         let on_damper = contact_by
             + match parameter {
                 Parameter::K2 => self.rest_distance() - (x2 - x1),
@@ -105,7 +96,13 @@ impl Coupled {
                 Parameter::D => k2,
                 _ => 0.0,
             };
-        [-on_damper / m1, on_damper / m2]
+        let alone = match parameter {
+            Parameter::K1 => [-x1 / m1, 0.0],
+            Parameter::C1 => [-v1 / m1, 0.0],
+            Parameter::M2 => [0.0, -self.derivative_under([0.0; 2], y, contact)[3] / m2],
+            _ => [0.0; 2],
+        };
+        [alone[0] - on_damper / m1, alone[1] + on_damper / m2]
     }
 
     /// The derivative by a parameter of what a measure is the largest size of, at time `t` (s) and state `y`, where `by` is the derivative
@@ -146,7 +143,13 @@ impl Coupled {
             Measure::GroundForce => {
                 let [k1, c1] = self.bare().ground_force_weights();
                 let own = y[0] * is(Parameter::K1) + y[1] * is(Parameter::C1);
-                (k1 * y[0] + c1 * y[1]).signum() * (k1 * by[0] + c1 * by[1] + own)
+                // Less the force that the ground exerts where it moves.
+                let [driven, driven_by] = match self.bare().is_on_moving_base() {
+                    true => [self.excitation(t)[0], self.bare().excitation_by(parameter, t)[0]],
+                    false => [0.0; 2],
+                };
+                let force = k1 * y[0] + c1 * y[1] - driven;
+                force.signum() * (k1 * by[0] + c1 * by[1] + own - driven_by)
             }
             Measure::Stroke => {
                 let stretch = y[2] - y[0] - self.rest_distance();

@@ -74,6 +74,21 @@ fn exact_linear_part_is_the_jacobian_in_flight() {
     }
 }
 
+/// Of a damper that a rigid wall holds, `A y + b f` is the derivative of the state.
+#[test]
+fn exact_linear_part_while_a_wall_holds() {
+    let system = Numbers { rigid: Some(0.5), ..TWO_SIDED }.coupled();
+    let (a, b) = system.held_linear_part();
+    for y in [[0.02, -0.3, 0.02, -0.3], [-0.05, 0.4, -0.05 + system.wall(Side::Obstacle), 0.4]] {
+        let excitation = system.excitation(T);
+        let common = system.held_acceleration(excitation, &y);
+        for (i, expected) in [y[1], common, y[3], common].into_iter().enumerate() {
+            let found = (a * nalgebra::SVector::from(y))[i] + b[i] * excitation[0];
+            assert_close(found, expected, 10.0, 1e-14, "A y + b P cos ωt");
+        }
+    }
+}
+
 #[test]
 fn exact_time_derivative_of_equation_1() {
     let (system, bare) = (SSVI.coupled(), SSVI.bare());

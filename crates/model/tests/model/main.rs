@@ -10,5 +10,6 @@ mod histories;
 mod mode;
 mod overdamped;
 mod regularised;
+mod sensitivity;
 mod stationary;
 mod steady;

@@ -55,6 +55,32 @@ fn invariant_a_speed_that_follows_the_forces_leaves_out_what_it_says() {
     }
 }
 
+/// The force and its rates, beside a state whose rates are those of the speed that follows the forces.
+#[test]
+fn exact_the_jet_is_of_the_force_and_of_the_speed_that_follows_it() {
+    let numbers = Numbers { c2: 1e7, d: 0.0, ..SSVI };
+    let (system, omega) = (numbers.coupled(), numbers.omega);
+    for side in Side::BOTH {
+        let mut equations = system.regularised_contact(side);
+        equations.set_excitation(0.0, system.excitation(T));
+        equations.set_overdamped(true);
+        let y = [3e-2, 0.0, 0.05, -0.4, 2e-3];
+        let (states, force) = equations.jet(&y);
+        let [cos, sin] = system.excitation(T + 2e-3);
+        for (found, exact) in force.iter().zip([cos, -omega * sin, -omega * omega * cos]) {
+            assert!((found - exact).abs() < 1e-12 * omega * omega * numbers.p, "{found} {exact}");
+        }
+        let following = equations.following(&y);
+        for k in 0..3 {
+            let [now, next] = [states[k], states[k + 1]];
+            assert_eq!([now[1], now[3]], [next[0], next[2]], "the rates of one are those of the next");
+            assert_eq!(next[1], following.acceleration[k]);
+            let apart = side.sign() * (now[3] - now[1]) - following.speed[k];
+            assert!(apart.abs() <= 1e-12 * (now[1].abs() + now[3].abs()), "{k}: {apart:e}");
+        }
+    }
+}
+
 /// Pieces of contacts whose speed follows the forces.
 #[test]
 fn invariant_no_piece_of_an_overdamped_contact_leaves_its_bounds() {

@@ -1,7 +1,7 @@
 //! The steady response against a direct solution of the linear system, Den Hartog's fixed points, and known numbers.
 
 use nalgebra::{Complex, SMatrix, SVector};
-use retune_testkit::scenes::{Numbers, SSVI, Spread, TMD};
+use retune_testkit::scenes::{Numbers, SSVI, Spread, TMD, slope};
 
 /// Solves `(iω - A) Y = b P` of the stated linear part.
 fn solved<const N: usize>(a: SMatrix<f64, N, N>, b: [f64; N], omega: f64, p: f64) -> SVector<Complex<f64>, N>
@@ -21,6 +21,23 @@ fn sampled(x: Complex<f64>, omega: f64, m: f64, k: f64) -> f64 {
             0.5 * (m * velocity * velocity + k * position * position)
         })
         .fold(0.0, f64::max)
+}
+
+/// At resonance, without damping, from rest: `x1 = P t sin(ωt) / (2 m1 ω)`, whose energy at the end of a period is all in its speed.
+#[test]
+fn exact_energy_that_a_force_brings_at_resonance() {
+    let omega = (TMD.k1 / TMD.m1).sqrt();
+    let numbers = Numbers { c1: 0.0, omega, ..TMD };
+    let (bare, end) = (numbers.bare(), 5.0 * std::f64::consts::TAU / omega);
+    let x1 = |t: f64| numbers.p * t * (omega * t).sin() / (2.0 * numbers.m1 * omega);
+    let v1 = |t: f64| numbers.p * (t * (omega * t).cos() + (omega * t).sin() / omega) / (2.0 * numbers.m1);
+    for t in [0.3, 2.0, end] {
+        let [speed, acceleration] = bare.derivative(bare.excitation(t), &[x1(t), v1(t)]);
+        let [found, rate] = slope(1e-3, |s| [x1(t + s), v1(t + s)]);
+        assert!((speed - found).abs() < 1e-9 && (acceleration - rate).abs() < 1e-9, "{t}");
+    }
+    let energy = 0.5 * (numbers.m1 * v1(end).powi(2) + numbers.k1 * x1(end).powi(2));
+    assert!((bare.resonant_energy(end) / energy - 1.0).abs() < 1e-12);
 }
 
 #[test]

@@ -98,7 +98,13 @@ fn rates(system: &Coupled, measure: Measure, now: &Motion) -> [f64; 3] {
         Measure::GroundForce => {
             let [k1, c1] = system.bare().ground_force_weights();
             let [x1, v1, a1, jerk, _] = motion();
-            [k1 * x1 + c1 * v1, k1 * v1 + c1 * a1, k1 * a1 + c1 * jerk]
+            let own = [k1 * x1 + c1 * v1, k1 * v1 + c1 * a1, k1 * a1 + c1 * jerk];
+            if !system.bare().is_on_moving_base() {
+                return own;
+            }
+            let ([cos, sin], [omega, returns]) = (excitation, system.bare().turning());
+            let driven = [cos, -omega * sin, -omega * returns * cos];
+            std::array::from_fn(|i| own[i] - driven[i])
         }
         Measure::ContactForce if system.is_lossy() => {
             let [near, far] = Side::BOTH.map(|side| system.contact_force_rates(excitation, &now.y, side));

@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix4;
 use rayon::prelude::*;
-use retune_model::{Coupled, Measure, Parameter};
+use retune_model::{Amplitude, Coupled, Measure, Parameter};
 use retune_solver::observe::Unobserved;
 use retune_solver::{
     Also, Ask, Follower, Motion, Phase, Settings, Tangent, Transition, Window, extremes, extremes_by,
@@ -40,9 +40,9 @@ const BY: [Parameter; 11] = [
     Parameter::Lambda,
 ];
 
-fn tangent(numbers: &Numbers, y: [f64; 4], seconds: f64) -> Transition {
+fn tangent(numbers: &Numbers, y: [f64; 4], seconds: f64, by: &[Parameter]) -> Transition {
     let system = numbers.coupled();
-    let mut tangent = Tangent::new(&system, &settings(), seconds, &BY);
+    let mut tangent = Tangent::new(&system, &settings(), seconds, by);
     tangent.propagate(motion(&system, y), seconds, &mut Unobserved).expect("a run")
 }
 
@@ -61,6 +61,7 @@ fn moved(numbers: &Numbers, parameter: Parameter, by: f64) -> Numbers {
         Parameter::C => &mut moved.c,
         Parameter::R => &mut moved.r,
         Parameter::Lambda => &mut moved.lambda,
+        Parameter::Restitution => &mut moved.e,
         other => panic!("no derivative by {other}"),
     };
     *value += by;
@@ -80,6 +81,7 @@ fn size(numbers: &Numbers, parameter: Parameter) -> f64 {
         Parameter::C => numbers.c,
         Parameter::R => numbers.r,
         Parameter::Lambda => 1.0,
+        Parameter::Restitution => numbers.e,
         other => panic!("no derivative by {other}"),
     }
 }
@@ -153,7 +155,7 @@ fn reference_derivatives_agree_with_differences() {
         }
         let worst = &mut worsts[usize::from(lossy)];
         let seconds = 1.5;
-        let found = tangent(&numbers, y, seconds);
+        let found = tangent(&numbers, y, seconds, &BY);
         for j in 0..4 {
             let expected = richardson(2e-5, |h| {
                 let mut y = y;
@@ -184,6 +186,41 @@ fn reference_derivatives_agree_with_differences() {
     assert!(worsts[0] < 1e-8 && worsts[1] < 1e-6 && worst_at_zero < 1e-6, "{worsts:?} {worst_at_zero:e}");
 }
 
+/// The same with one restitution at every speed, whose law depends on the masses, too.
+#[test]
+fn reference_derivatives_with_a_restitution_agree_with_differences() {
+    let mut spread = Spread::new(9);
+    let with_restitution = BY.map(|by| if by == Parameter::Lambda { Parameter::Restitution } else { by });
+    let scenes: Vec<(Numbers, [f64; 4])> = (0..60)
+        .map(|scene| {
+            let (numbers, y) = random(&mut spread, scene % 2 == 1);
+            (Numbers { e: 0.1 + 0.85 * spread.unit(), ..numbers }, y)
+        })
+        .collect();
+    let worst = |(numbers, y): &(Numbers, [f64; 4])| {
+        let (seconds, mut worst) = (1.5, 0.0_f64);
+        let found = tangent(numbers, *y, seconds, &with_restitution);
+        for (column, &parameter) in found.by.iter().zip(&with_restitution) {
+            let share = if parameter == Parameter::R { 1e-2 } else { 2e-4 };
+            let step = share * size(numbers, parameter);
+            let expected = richardson(step, |h| after(&moved(numbers, parameter, h), *y, seconds));
+            worst = worst.max(error(column, &expected));
+        }
+        for j in 0..4 {
+            let expected = richardson(2e-5, |h| {
+                let mut y = *y;
+                y[j] += h;
+                after(numbers, y, seconds)
+            });
+            worst = worst.max(error(&found.by_state[j], &expected));
+        }
+        worst
+    };
+    let worst: Vec<f64> = scenes.par_iter().map(worst).collect();
+    let most = worst.iter().copied().fold(0.0, f64::max);
+    assert!(most < 1e-6, "{most:e} {worst:?}");
+}
+
 /// Liouville: the volume shrinks at the rate of the trace, contact or not.
 #[test]
 fn exact_the_determinant_over_a_period() {
@@ -192,7 +229,7 @@ fn exact_the_determinant_over_a_period() {
         let (numbers, y) =
             if scene == 0 { (TMD, [0.0, 0.0, 2.08, 0.0]) } else { random(&mut spread, scene % 2 == 1) };
         let period = TAU / numbers.omega;
-        let by_state = tangent(&numbers, y, period).by_state;
+        let by_state = tangent(&numbers, y, period, &BY).by_state;
         let found = Matrix4::from_fn(|i, j| by_state[j][i]).determinant();
         let Numbers { m1, c1, m2, c2, .. } = numbers;
         let expected = (-period * (c1 / m1 + c2 / m1 + c2 / m2)).exp();
@@ -200,31 +237,53 @@ fn exact_the_determinant_over_a_period() {
     }
 }
 
+/// Numbers with what moves the structure.
+type Driven = (Numbers, Amplitude);
+
 /// Largest values over a window of a few periods, from rest. A scene is left out where the largest value is reached at another maximum for
 /// a step to either side: there it has no derivative.
 #[test]
 fn reference_gradients_of_largest_values_agree_with_differences() {
     let mut spread = Spread::new(8);
     let window = Window { from: 1.0, to: 5.0 };
-    let mut scenes: Vec<Numbers> = (0..60).map(|scene| random(&mut spread, scene % 2 == 1).0).collect();
+    let mut scenes: Vec<Driven> =
+        (0..60).map(|scene| (random(&mut spread, scene % 2 == 1).0, Amplitude::Force)).collect();
     for scene in 0..30 {
         let lambda = spread.logarithmic(0.02, 10.0);
-        scenes.push(Numbers { lambda, ..random(&mut spread, scene % 2 == 1).0 });
+        scenes.push((Numbers { lambda, ..random(&mut spread, scene % 2 == 1).0 }, Amplitude::Force));
     }
-    let largest = |numbers: &Numbers, measure: Measure| {
+    for scene in 0..12 {
+        let e = 0.1 + 0.85 * spread.unit();
+        scenes.push((Numbers { e, ..random(&mut spread, scene % 2 == 1).0 }, Amplitude::Force));
+    }
+    // Forces of an imbalance and of a base, below and above the resonance of the structure.
+    for scene in 0..24 {
+        let (amplitude, p) =
+            [(Amplitude::Imbalance, 20.0), (Amplitude::Base, 0.02), (Amplitude::BaseAcceleration, 0.8)]
+                [scene % 3];
+        let numbers = random(&mut spread, scene % 2 == 1).0;
+        scenes.push((Numbers { p, omega: spread.logarithmic(3.0, 15.0), ..numbers }, amplitude));
+    }
+    let largest = |(numbers, amplitude): &Driven, measure: Measure| {
         let ask = Ask { measure, also: Some(Also::walls(5.0)), ..Ask::default() };
-        extremes(&numbers.scene(), window, &settings(), ask).expect("a run").largest
+        extremes(&numbers.forced_by(*amplitude), window, &settings(), ask).expect("a run").largest
     };
     // How many derivatives are compared, and the largest error of them.
-    let compare = |numbers: &Numbers, measure: Measure| -> (usize, f64) {
-        let (mut compared, mut worst) = (0, 0.0_f64);
-        let first = largest(numbers, measure);
+    let compare = |driven: &Driven, measure: Measure| -> (usize, f64) {
+        let ((numbers, amplitude), mut compared, mut worst) = (driven, 0, 0.0_f64);
+        let first = largest(driven, measure);
         if first.value == 0.0 {
             return (0, 0.0);
         }
         let ask = Ask { measure, ..Ask::default() };
-        let found = extremes_by(&numbers.scene(), window, &settings(), ask, &BY).expect("a run");
-        for (by, parameter) in found.iter().zip(BY) {
+        let parameters = BY.map(|parameter| match parameter {
+            Parameter::Lambda if numbers.e < 1.0 => Parameter::Restitution,
+            _ => parameter,
+        });
+        let asked = parameters.map(|one| if one == Parameter::P { amplitude.parameter() } else { one });
+        let scene = numbers.forced_by(*amplitude);
+        let found = extremes_by(&scene, window, &settings(), ask, &asked).expect("a run");
+        for (by, parameter) in found.iter().zip(parameters) {
             let share = if parameter == Parameter::R { 1e-2 } else { 2e-4 };
             let step = if parameter == Parameter::Lambda {
                 1e-3 * numbers.lambda.min(0.5)
@@ -234,7 +293,7 @@ fn reference_gradients_of_largest_values_agree_with_differences() {
             if step == 0.0 {
                 continue;
             }
-            let at = |h: f64| largest(&moved(numbers, parameter, h), measure);
+            let at = |h: f64| largest(&(moved(numbers, parameter, h), *amplitude), measure);
             if [-step, step].iter().any(|&h| (at(h).time - first.time).abs() > 0.02) {
                 continue;
             }
@@ -246,8 +305,7 @@ fn reference_gradients_of_largest_values_agree_with_differences() {
         }
         (compared, worst)
     };
-    let all =
-        scenes.par_iter().flat_map_iter(|numbers| Measure::ALL.map(|measure| compare(numbers, measure)));
+    let all = scenes.par_iter().flat_map_iter(|driven| Measure::ALL.map(|measure| compare(driven, measure)));
     let (compared, worst) = all.reduce(|| (0, 0.0), |a, b| (a.0 + b.0, a.1.max(b.1)));
     assert!(compared > 5000 && worst < 1e-6, "{compared} {worst:e}");
 }
