@@ -22,7 +22,7 @@ fn system(scene: &Scene) -> Coupled {
 
 /// The system with a parameter larger by a share.
 fn changed(scene: &Scene, parameter: Parameter, value: f64, share: f64) -> Coupled {
-    system(&parameter.at(scene.clone(), value * (1.0 + share)).expect("in range"))
+    system(&parameter.at(*scene, value * (1.0 + share)).expect("in range"))
 }
 
 /// The parameters that the solver takes derivatives by, as far as the scene has them, each with its value.
