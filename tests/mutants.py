@@ -3,8 +3,8 @@
 cargo-mutants makes the mutants; which of them are drawn follows from the seed and from what they change, not from the lines that they
 stand on, so that a draw stays nearly the same when code moves. Those of each crate are built in a copy of the project inside
 `target/mutants`. What became of a mutant is remembered in `results/robustness/mutants` until its file changes: a pass that was stopped goes
-on, on any machine, and passes over different crates (`--package`) may run at once. A survivor whose name stands in `tests/mutants.json` changes nothing, for the reason
-given there.
+on, on any machine, and passes over different crates (`--package`) may run at once. A survivor whose name stands in `tests/mutants.json`
+changes nothing, for the reason given there.
 """
 
 import argparse, collections, fnmatch, functools, hashlib, json, os, pathlib, shutil, subprocess, sys
