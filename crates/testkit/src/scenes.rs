@@ -84,6 +84,14 @@ pub fn rigid(e: f64) -> Contact {
     Contact::Rigid(Rigid { restitution: Bounce::new(e).expect("in [0, 1]") })
 }
 
+/// What moves the structure at a frequency, with sizes of much the same effect: N, kg·m, m and m/s².
+pub const DRIVEN: [(Amplitude, f64); 4] = [
+    (Amplitude::Force, 800.0),
+    (Amplitude::Imbalance, 20.0),
+    (Amplitude::Base, 0.02),
+    (Amplitude::BaseAcceleration, 0.8),
+];
+
 impl Numbers {
     /// What contacts lose.
     fn loss(&self) -> Loss {

@@ -11,7 +11,7 @@ use wide::f64x4;
 
 /// Terms of a polynomial.
 const TERMS: usize = 4 * few::TERMS;
-/// Where one polynomial ends and the next begins, at most: halves of them, and halves of these, where r bends.
+/// Where one polynomial ends and the next begins; where r bends one is halved, and its halves are.
 const ENDS: [f64; 5] = [-1.0, -0.5, 0.0, 0.5, 1.0];
 /// How often one is halved at most.
 const HALVINGS: u32 = 12;
@@ -51,11 +51,11 @@ impl Remainder {
     /// Adds the pieces between two ends; whether they are exact.
     fn fill(&mut self, [from, to]: [f64; 2], halvings: u32, value: &impl Fn(f64) -> f64) -> bool {
         let by_root = from >= 0.0;
-        if let Some(piece) = Piece::new([from, to].map(|x| self.variable(by_root, x)), |own| {
-            value(if by_root { self.branch - own * own } else { own })
-        }) {
+        let ends = [from, to].map(|x| self.variable(by_root, x));
+        let of_own = |own: f64| value(if by_root { self.branch - own * own } else { own });
+        if let Some(piece) = Piece::new(by_root, ends, of_own) {
             self.starts.push(from);
-            self.pieces.push(Piece { by_root, ..piece });
+            self.pieces.push(piece);
             return true;
         }
         let middle = 0.5 * (from + to);
@@ -105,7 +105,7 @@ impl Remainder {
 
 impl Piece {
     /// Of the values of its variable between two ends; none where it is not exact to rounding.
-    fn new([from, to]: [f64; 2], value: impl Fn(f64) -> f64) -> Option<Self> {
+    fn new(by_root: bool, [from, to]: [f64; 2], value: impl Fn(f64) -> f64) -> Option<Self> {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         let values: [f64; TERMS] = std::array::from_fn(|node| value(middle + half * cosine(1, node)));
         let chebyshev: [f64; TERMS] = std::array::from_fn(|k| {
@@ -117,7 +117,7 @@ impl Piece {
         }
         let powers = powers(&chebyshev);
         let coefficients = std::array::from_fn(|i| std::array::from_fn(|k| powers[few::TERMS * i + k]));
-        Some(Self { coefficients, middle, scale: 1.0 / half, by_root: false })
+        Some(Self { coefficients, middle, scale: 1.0 / half, by_root })
     }
 }
 

@@ -63,7 +63,7 @@ pub(crate) struct Stage {
 const SMALL: f64 = 0.25;
 /// Terms of them: the first that is left out is below `SMALL^TERMS`.
 const TERMS: i32 = 28;
-/// The least restitution with polynomials: below it the rounding of `G` itself, of the order of 1/e², shows in them.
+/// The least restitution with polynomials: below it the rounding of `G` itself, up to some 1e-15/e², shows in them.
 const LEAST: f64 = 0.002;
 /// How much beyond lift-off, as a share of w², a stage is computed by the polynomials of contacts.
 const BEYOND: f64 = 1e-3;

@@ -1,17 +1,9 @@
 //! Derivatives by the parameters of a scene, at a state and a time, against finite differences of what they are the derivatives of.
 
 use retune_model::{Amplitude, Coupled, Measure, Parameter, Scene, Side};
-use retune_testkit::scenes::{LOSSY, Numbers, RESTORING, SSVI, Spread, TWO_SIDED, slope};
+use retune_testkit::scenes::{DRIVEN, LOSSY, Numbers, RESTORING, SSVI, Spread, TWO_SIDED, slope};
 
 const T: f64 = 0.37;
-
-/// What moves the structure, with sizes of much the same effect: N, kg·m, m and m/s².
-const DRIVEN: [(Amplitude, f64); 4] = [
-    (Amplitude::Force, 800.0),
-    (Amplitude::Imbalance, 20.0),
-    (Amplitude::Base, 0.02),
-    (Amplitude::BaseAcceleration, 0.8),
-];
 
 /// Spacing of the differences, as a share of a parameter.
 const H: f64 = 3e-4;
@@ -45,7 +37,7 @@ fn states(scene: &Scene) -> Vec<[f64; 4]> {
 }
 
 /// What a measure is the largest size of.
-fn size_of(measure: Measure, system: &Coupled, y: &[f64; 4], numbers: &Numbers) -> f64 {
+fn size_of(measure: Measure, system: &Coupled, y: &[f64; 4]) -> f64 {
     let [near, far] = system.indentation(y);
     let side = if near > far { Side::Primary } else { Side::Obstacle };
     match measure {
@@ -61,7 +53,7 @@ fn size_of(measure: Measure, system: &Coupled, y: &[f64; 4], numbers: &Numbers) 
         Measure::Stroke => (y[2] - y[0] - system.rest_distance()).abs(),
         Measure::ContactForce => system.contact_forces(y)[side as usize],
         Measure::ContactPressure => system.wall_pressure(side, near.max(far).max(0.0)),
-        other => panic!("{other:?} of {numbers:?} is not of a moment"),
+        other => panic!("{other:?} is not of a moment"),
     }
 }
 
@@ -78,7 +70,7 @@ fn exact_derivatives_of_every_measure_by_every_parameter() {
                 for measure in Measure::ALL.into_iter().filter(|measure| *measure != Measure::DecayTime) {
                     let at = |share: f64| {
                         let there = std::array::from_fn(|i| y[i] + share * along[i]);
-                        [size_of(measure, &changed(&scene, parameter, value, share), &there, &numbers)]
+                        [size_of(measure, &changed(&scene, parameter, value, share), &there)]
                     };
                     let [expected] = slope(H, at);
                     let by = along.map(|along| along / value);

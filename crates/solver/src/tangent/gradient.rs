@@ -4,6 +4,8 @@ use super::observer::{Tangent, Transition};
 use crate::error::SolverError;
 use crate::hybrid::propagator::Motion;
 use crate::observe::observer::Unobserved;
+use crate::observe::quantity::Quantity;
+use crate::observe::structure::StructureMotion;
 use crate::response::Extreme;
 use retune_model::{Coupled, Measure, Parameter, Side};
 
@@ -95,17 +97,7 @@ fn rates(system: &Coupled, measure: Measure, now: &Motion) -> [f64; 3] {
         Measure::Displacement => of_motion(0),
         Measure::Velocity => of_motion(1),
         Measure::Acceleration => of_motion(2),
-        Measure::GroundForce => {
-            let [k1, c1] = system.bare().ground_force_weights();
-            let [x1, v1, a1, jerk, _] = motion();
-            let own = [k1 * x1 + c1 * v1, k1 * v1 + c1 * a1, k1 * a1 + c1 * jerk];
-            if !system.bare().is_on_moving_base() {
-                return own;
-            }
-            let ([cos, sin], [omega, returns]) = (excitation, system.bare().turning());
-            let driven = [cos, -omega * sin, -omega * returns * cos];
-            std::array::from_fn(|i| own[i] - driven[i])
-        }
+        Measure::GroundForce => StructureMotion::ground_force(system, 1.0).rates(excitation, &now.y),
         Measure::ContactForce if system.is_lossy() => {
             let [near, far] = Side::BOTH.map(|side| system.contact_force_rates(excitation, &now.y, side));
             if near[0] > far[0] { near } else { far }

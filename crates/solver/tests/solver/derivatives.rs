@@ -7,7 +7,7 @@ use retune_solver::observe::Unobserved;
 use retune_solver::{
     Also, Ask, Follower, Motion, Phase, Settings, Tangent, Transition, Window, extremes, extremes_by,
 };
-use retune_testkit::scenes::{Numbers, SSVI, Spread, TMD, TWO_SIDED};
+use retune_testkit::scenes::{DRIVEN, Numbers, SSVI, Spread, TMD, TWO_SIDED};
 use std::f64::consts::TAU;
 
 fn settings() -> Settings {
@@ -122,6 +122,19 @@ fn error(found: &[f64; 4], expected: &[f64; 4]) -> f64 {
     found.iter().zip(expected).fold(0.0, |error, (a, b)| f64::max(error, (a - b).abs())) / size
 }
 
+/// That of the derivatives by the first state.
+fn error_by_state(found: &Transition, numbers: &Numbers, y: [f64; 4], seconds: f64) -> f64 {
+    let of = |j: usize| {
+        let expected = richardson(2e-5, |h| {
+            let mut y = y;
+            y[j] += h;
+            after(numbers, y, seconds)
+        });
+        error(&found.by_state[j], &expected)
+    };
+    (0..4).map(of).fold(0.0, f64::max)
+}
+
 fn random(spread: &mut Spread, two_walls: bool) -> (Numbers, [f64; 4]) {
     let base = if two_walls { TWO_SIDED } else { SSVI };
     let mut near = |value: f64| value * (1.0 + 0.2 * spread.signed());
@@ -156,15 +169,7 @@ fn reference_derivatives_agree_with_differences() {
         let worst = &mut worsts[usize::from(lossy)];
         let seconds = 1.5;
         let found = tangent(&numbers, y, seconds, &BY);
-        for j in 0..4 {
-            let expected = richardson(2e-5, |h| {
-                let mut y = y;
-                y[j] += h;
-                after(&numbers, y, seconds)
-            });
-            let error = error(&found.by_state[j], &expected);
-            *worst = worst.max(error);
-        }
+        *worst = worst.max(error_by_state(&found, &numbers, y, seconds));
         for (column, &parameter) in found.by.iter().zip(&BY) {
             let share = if parameter == Parameter::R { 1e-2 } else { 2e-4 };
             let size = size(&numbers, parameter);
@@ -206,15 +211,7 @@ fn reference_derivatives_with_a_restitution_agree_with_differences() {
             let expected = richardson(step, |h| after(&moved(numbers, parameter, h), *y, seconds));
             worst = worst.max(error(column, &expected));
         }
-        for j in 0..4 {
-            let expected = richardson(2e-5, |h| {
-                let mut y = *y;
-                y[j] += h;
-                after(numbers, y, seconds)
-            });
-            worst = worst.max(error(&found.by_state[j], &expected));
-        }
-        worst
+        worst.max(error_by_state(&found, numbers, *y, seconds))
     };
     let worst: Vec<f64> = scenes.par_iter().map(worst).collect();
     let most = worst.iter().copied().fold(0.0, f64::max);
@@ -258,9 +255,7 @@ fn reference_gradients_of_largest_values_agree_with_differences() {
     }
     // Forces of an imbalance and of a base, below and above the resonance of the structure.
     for scene in 0..24 {
-        let (amplitude, p) =
-            [(Amplitude::Imbalance, 20.0), (Amplitude::Base, 0.02), (Amplitude::BaseAcceleration, 0.8)]
-                [scene % 3];
+        let (amplitude, p) = DRIVEN[1 + scene % 3];
         let numbers = random(&mut spread, scene % 2 == 1).0;
         scenes.push((Numbers { p, omega: spread.logarithmic(3.0, 15.0), ..numbers }, amplitude));
     }
