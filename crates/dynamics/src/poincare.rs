@@ -42,7 +42,7 @@ impl<'a> PoincareMap<'a> {
     ///
     /// # Errors
     /// [`SolverError`] with the time reached in the period.
-    pub fn next(&mut self, from: Motion, observer: &mut impl Observer<4>) -> Result<Motion, SolverError> {
+    pub fn next(&mut self, from: Motion, observer: &mut dyn Observer<4>) -> Result<Motion, SolverError> {
         let end = self.follower.propagate(Motion { t: 0.0, ..from }, self.period, observer)?;
         Ok(Motion { t: 0.0, ..end })
     }

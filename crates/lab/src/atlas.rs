@@ -149,7 +149,7 @@ impl Durations {
 }
 
 impl Observer<4> for Durations {
-    fn segment(&mut self, segment: &impl Segment<4>) {
+    fn segment(&mut self, segment: &dyn Segment<4>) {
         let [from, to] = segment.ends();
         // Only in flight is time uniform over a segment.
         if from.clock == [1.0, 0.0] && to.t > from.t {

@@ -225,7 +225,7 @@ pub fn follow(
     start: [f64; 4],
     to: f64,
     settings: &Settings,
-    observer: &mut impl Observer<4>,
+    observer: &mut dyn Observer<4>,
 ) -> Result<[f64; 4], SolverError> {
     let mut run = Run::new(system, settings, 0.0, start, settings.longest_step(to));
     match settings.method {
@@ -251,7 +251,7 @@ pub struct Touches {
 }
 
 impl Observer<4> for Touches {
-    fn segment(&mut self, _segment: &impl Segment<4>) {}
+    fn segment(&mut self, _segment: &dyn Segment<4>) {}
     fn touch_down(&mut self, _t: f64, _side: Side) {
         self.count += 1;
     }

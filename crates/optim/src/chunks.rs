@@ -10,8 +10,8 @@ pub(crate) const TOGETHER: usize = 8;
 pub(crate) fn in_groups<T: Send + Sync>(
     count: usize,
     together: usize,
-    value: impl Fn(usize, &[T]) -> T + Sync,
-    mut enough: impl FnMut(&[T]) -> bool,
+    value: &(dyn Fn(usize, &[T]) -> T + Sync),
+    enough: &dyn Fn(&[T]) -> bool,
 ) -> Vec<T> {
     let mut results: Vec<T> = Vec::with_capacity(count);
     while results.len() < count && (results.is_empty() || !enough(&results)) {

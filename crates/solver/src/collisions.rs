@@ -73,7 +73,7 @@ impl Observed<'_> {
 }
 
 impl Observer<4> for Observed<'_> {
-    fn segment(&mut self, segment: &impl Segment<4>) {
+    fn segment(&mut self, segment: &dyn Segment<4>) {
         let [from, to] = segment.ends();
         let out_at_once = self.began.is_some_and(|(_, side)| self.is_out(side, &from.y));
         if segment.in_flight() || out_at_once {

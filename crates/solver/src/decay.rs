@@ -87,7 +87,7 @@ struct LastAbove<Q> {
 }
 
 impl<Q> LastAbove<Q> {
-    fn place<const N: usize>(&self, segment: &impl Segment<N>, theta: f64) -> Place<N>
+    fn place<const N: usize>(&self, segment: &dyn Segment<N>, theta: f64) -> Place<N>
     where
         Q: Quantity<N>,
     {
@@ -104,7 +104,7 @@ impl<Q> LastAbove<Q> {
 }
 
 impl<const N: usize, Q: Quantity<N>> Observer<N> for LastAbove<Q> {
-    fn segment(&mut self, segment: &impl Segment<N>) {
+    fn segment(&mut self, segment: &dyn Segment<N>) {
         self.is_above = false;
         if self.search.quantity.form().most(segment.energy()) <= self.level {
             return;

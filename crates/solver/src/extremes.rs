@@ -265,7 +265,7 @@ fn observed<'a, S: Structure<N>, const N: usize>(
 
 impl Observer<4> for Peak<'_> {
     #[inline(always)]
-    fn segment(&mut self, segment: &impl Segment<4>) {
+    fn segment(&mut self, segment: &dyn Segment<4>) {
         match self {
             Self::Energy(e1) => e1.segment(segment),
             Self::Motion(size) => size.segment(segment),
@@ -273,7 +273,7 @@ impl Observer<4> for Peak<'_> {
         }
     }
     #[inline(always)]
-    fn path(&mut self, path: &impl Path<4>) {
+    fn path(&mut self, path: &dyn Path<4>) {
         match self {
             Self::Energy(e1) => e1.path(path),
             Self::Motion(size) => size.path(path),

@@ -93,7 +93,7 @@ struct Observed<'a, S> {
 }
 
 impl<S: Loses<N>, const N: usize> Observer<N> for Observed<'_, S> {
-    fn segment(&mut self, segment: &impl Segment<N>) {
+    fn segment(&mut self, segment: &dyn Segment<N>) {
         for (node, weight) in &self.rule {
             let knot = segment.at(node * segment.length());
             let time = weight * segment.length() * knot.clock[0];

@@ -63,8 +63,8 @@ pub trait Follow<const N: usize>: Planned<N> {
         plan: Plan,
         window: Window,
         settings: &Settings,
-        before: &mut impl Observer<N>,
-        observer: &mut impl Observer<N>,
+        before: &mut dyn Observer<N>,
+        observer: &mut dyn Observer<N>,
     ) -> Followed<N>;
 }
 
@@ -74,8 +74,8 @@ impl Follow<2> for Bare {
         plan: Plan,
         window: Window,
         settings: &Settings,
-        before: &mut impl Observer<2>,
-        observer: &mut impl Observer<2>,
+        before: &mut dyn Observer<2>,
+        observer: &mut dyn Observer<2>,
     ) -> Followed<2> {
         match plan {
             Plan::General(method) => follow_by(method, self, window, settings, before, observer),
@@ -85,14 +85,13 @@ impl Follow<2> for Bare {
 }
 
 impl Follow<4> for Coupled {
-    #[inline(always)]
     fn follow(
         &self,
         plan: Plan,
         window: Window,
         settings: &Settings,
-        before: &mut impl Observer<4>,
-        observer: &mut impl Observer<4>,
+        before: &mut dyn Observer<4>,
+        observer: &mut dyn Observer<4>,
     ) -> Followed<4> {
         match plan {
             Plan::General(_) if self.is_rigid() => Err(SolverError::RigidWalls { t: 0.0 }),
@@ -118,8 +117,8 @@ fn follow_free<S: LinearSystem<N>, const N: usize>(
     system: &S,
     window: Window,
     settings: &Settings,
-    before: &mut impl Observer<N>,
-    observer: &mut impl Observer<N>,
+    before: &mut dyn Observer<N>,
+    observer: &mut dyn Observer<N>,
 ) -> Followed<N> {
     let mut free = ContactFree::new(system, window.to, settings.max_steps);
     if window.from > 0.0 {
@@ -135,8 +134,8 @@ fn follow_by<S: LinearSystem<N>, const N: usize>(
     system: &S,
     window: Window,
     settings: &Settings,
-    before: &mut impl Observer<N>,
-    observer: &mut impl Observer<N>,
+    before: &mut dyn Observer<N>,
+    observer: &mut dyn Observer<N>,
 ) -> Followed<N>
 where
     Const<N>: DimMin<Const<N>, Output = Const<N>>,
@@ -153,7 +152,7 @@ fn follow_stretches<'a, S: LinearSystem<N>, const N: usize>(
     system: &'a S,
     mut run: Run<'a, S, N>,
     to: f64,
-    observer: &mut impl Observer<N>,
+    observer: &mut dyn Observer<N>,
 ) -> Result<Run<'a, S, N>, SolverError>
 where
     Const<N>: DimMin<Const<N>, Output = Const<N>>,
@@ -208,7 +207,7 @@ impl<'a> Follower<'a> {
         &mut self,
         from: Motion,
         to: f64,
-        observer: &mut impl Observer<4>,
+        observer: &mut dyn Observer<4>,
     ) -> Result<Motion, SolverError> {
         match &mut self.way {
             Way::Exact(hybrid) => {
@@ -238,7 +237,7 @@ impl General {
         self,
         run: &mut Run<'_, S, N>,
         to: f64,
-        observer: &mut impl Observer<N>,
+        observer: &mut dyn Observer<N>,
     ) -> Result<(), SolverError>
     where
         Const<N>: DimMin<Const<N>, Output = Const<N>>,

@@ -183,7 +183,7 @@ impl<'a, S: Recorded<N>, const N: usize> Recorder<'a, S, N> {
     }
 
     /// The moments in a piece, in the order of time.
-    fn moments(&mut self, segment: &impl Segment<N>) -> Vec<(Knot<N>, Moment)> {
+    fn moments(&mut self, segment: &dyn Segment<N>) -> Vec<(Knot<N>, Moment)> {
         const SAMPLES: usize = 4;
         let [from, to] = segment.ends();
         let theta = |number: usize| segment.length() * number as f64 / SAMPLES as f64;
@@ -231,7 +231,7 @@ impl<'a, S: Recorded<N>, const N: usize> Recorder<'a, S, N> {
 }
 
 impl<S: Recorded<N>, const N: usize> Observer<N> for Recorder<'_, S, N> {
-    fn segment(&mut self, segment: &impl Segment<N>) {
+    fn segment(&mut self, segment: &dyn Segment<N>) {
         let [from, to] = segment.ends();
         if self.held && segment.in_flight() {
             self.held = false;

@@ -22,7 +22,7 @@ struct Count<'a> {
 }
 
 impl Observer<4> for Count<'_> {
-    fn segment(&mut self, segment: &impl Segment<4>) {
+    fn segment(&mut self, segment: &dyn Segment<4>) {
         let [from, to] = segment.ends();
         let open = |y: &[f64; 4]| self.system.indentation(y).iter().all(|z| *z <= 1e-12);
         if from.clock != [1.0, 0.0] || !open(&from.y) || !open(&to.y) {

@@ -25,7 +25,7 @@ struct Flight<'a> {
 }
 
 impl Observer<4> for Flight<'_> {
-    fn segment(&mut self, segment: &impl Segment<4>) {
+    fn segment(&mut self, segment: &dyn Segment<4>) {
         if self.touched.is_none() {
             self.peak.segment(segment);
             let end = segment.ends()[1];

@@ -50,7 +50,7 @@ pub fn worst_over<E: Send + Sync>(
     value: impl Fn(f64) -> Result<f64, E> + Sync,
     cutoff: f64,
 ) -> Result<Worst, E> {
-    let [worst] = all_worst_over(band, |omega| value(omega).map(|value| [value]), cutoff, [None], true)?;
+    let [worst] = all_worst_over(band, &|omega| value(omega).map(|value| [value]), cutoff, [None], true)?;
     Ok(worst)
 }
 
@@ -65,7 +65,7 @@ pub fn worst_over<E: Send + Sync>(
 /// As [`worst_over`].
 pub fn all_worst_over<E: Send + Sync, const N: usize>(
     band: &Band,
-    values: impl Fn(f64) -> Result<[f64; N], E> + Sync,
+    values: &(dyn Fn(f64) -> Result<[f64; N], E> + Sync),
     cutoff: f64,
     limits: [Option<f64>; N],
     peaks: bool,
@@ -78,7 +78,7 @@ pub fn all_worst_over<E: Send + Sync, const N: usize>(
         |(_, sample): &(usize, Result<Sample<N>, E>)| !sample.as_ref().is_ok_and(|s| s.values[0] <= cutoff);
     let ends = |taken: &[(usize, Result<Sample<N>, E>)]| taken.iter().any(above);
     let mut samples = if cutoff.is_finite() {
-        in_groups(count, TOGETHER, |place, _| sample(&order[place]), ends)
+        in_groups(count, TOGETHER, &|place, _| sample(&order[place]), &ends)
     } else {
         order.par_iter().map(sample).collect()
     };
@@ -129,7 +129,7 @@ fn larger<const N: usize>(a: [Worst; N], b: [Worst; N]) -> [Worst; N] {
 /// others met on the way, as far as it is `promising` and what is left to gain matters: parabolic steps, with golden sections where these fail (R. P. Brent, Algorithms for Minimization without
 /// Derivatives, 1973, chapter 5), from three known points.
 fn local_maximum<E, const N: usize>(
-    sample_at: &impl Fn(f64) -> Result<Sample<N>, E>,
+    sample_at: &dyn Fn(f64) -> Result<Sample<N>, E>,
     around: [Sample<N>; 3],
     quantity: usize,
     promising: f64,

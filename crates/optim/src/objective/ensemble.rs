@@ -99,7 +99,7 @@ impl Ensemble {
         statistic_over(
             self.statistic,
             self.members.max(1) as usize,
-            |i, cutoff| value(i as u32, cutoff),
+            &|i, cutoff| value(i as u32, cutoff),
             cutoff,
         )
     }
@@ -112,7 +112,7 @@ impl Ensemble {
 pub(super) fn statistic_over<E: Send + Sync + Clone>(
     statistic: Statistic,
     count: usize,
-    value: impl Fn(usize, f64) -> Result<f64, E> + Sync,
+    value: &(dyn Fn(usize, f64) -> Result<f64, E> + Sync),
     cutoff: f64,
 ) -> Result<f64, E> {
     let known = |results: &[Result<f64, E>]| -> Vec<f64> { results.iter().flatten().copied().collect() };
@@ -123,11 +123,11 @@ pub(super) fn statistic_over<E: Send + Sync + Clone>(
     let results = in_groups(
         count,
         TOGETHER,
-        |i, before| match statistic {
+        &|i, before| match statistic {
             Statistic::Mean => value(i, most - known(before).iter().sum::<f64>()),
             _ => value(i, cutoff),
         },
-        |results| {
+        &|results| {
             failed(results)
                 || match statistic {
                     Statistic::Mean => known(results).iter().sum::<f64>() > most,

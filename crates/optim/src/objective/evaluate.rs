@@ -139,7 +139,7 @@ impl Runs<'_> {
             return self.under(scene, term, cutoff);
         }
         let each = |i: usize, cutoff: f64| self.under(&Scene { forcing: records[i], ..*scene }, term, cutoff);
-        statistic_over(term.1.over_records(), records.len(), each, cutoff)
+        statistic_over(term.1.over_records(), records.len(), &each, cutoff)
     }
 
     /// The value under the forcing of the scene.
@@ -165,7 +165,7 @@ impl Runs<'_> {
             return self.over_k1(scene, phase, term, cutoff); // the common case, without an allocation
         }
         let all = term.1.scenes(scene)?;
-        worst_of(all.len(), |i| self.over_k1(&all[i], phase, term, cutoff), cutoff)
+        worst_of(all.len(), &|i| self.over_k1(&all[i], phase, term, cutoff), cutoff)
     }
 
     fn over_k1(&self, scene: &Scene, phase: f64, term: Numbered, cutoff: f64) -> Result<Largest, Unusable> {
@@ -177,9 +177,9 @@ impl Runs<'_> {
         };
         match &term.1.k1 {
             None => self.over_omega(scene, phase, term, cutoff),
-            Some(Stiffnesses::Range(range)) => self.worst_over(&range.band(), at, cutoff),
+            Some(Stiffnesses::Range(range)) => self.worst_over(&range.band(), &at, cutoff),
             Some(Stiffnesses::Set(set)) => {
-                worst_of(set.len(), |i| at(set.get(i).map_or(own, |k1| k1.get())), cutoff)
+                worst_of(set.len(), &|i| at(set.get(i).map_or(own, |k1| k1.get())), cutoff)
             }
         }
     }
@@ -205,7 +205,7 @@ impl Runs<'_> {
         }
         let at = |omega: f64| self.run(scene, omega, phase, term, cutoff);
         match band {
-            Some(band) => self.worst_over(&band, at, cutoff),
+            Some(band) => self.worst_over(&band, &at, cutoff),
             None => at(own),
         }
     }
@@ -214,7 +214,7 @@ impl Runs<'_> {
     fn worst_over(
         &self,
         band: &Band,
-        at: impl Fn(f64) -> Result<Largest, Unusable> + Sync,
+        at: &(dyn Fn(f64) -> Result<Largest, Unusable> + Sync),
         cutoff: f64,
     ) -> Result<Largest, Unusable> {
         let limits =
@@ -226,7 +226,7 @@ impl Runs<'_> {
 /// The larger of each over `count` cases, until one is above the cutoff.
 fn worst_of(
     count: usize,
-    at: impl Fn(usize) -> Result<Largest, Unusable> + Sync,
+    at: &(dyn Fn(usize) -> Result<Largest, Unusable> + Sync),
     cutoff: f64,
 ) -> Result<Largest, Unusable> {
     let above = |results: &[Result<Largest, Unusable>]| match results.last() {
@@ -235,6 +235,6 @@ fn worst_of(
         None => false,
     };
     let larger = |a: Largest, b: Largest| std::array::from_fn(|i| a[i].max(b[i]));
-    let results = in_groups(count, 1, |i, _| at(i), above);
+    let results = in_groups(count, 1, &|i, _| at(i), &above);
     results.into_iter().try_fold(Largest::default(), |worst, more| Ok(larger(worst, more?)))
 }

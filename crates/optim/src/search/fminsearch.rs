@@ -137,6 +137,9 @@ pub fn minimize(
     Fminsearch::new(start, options)?.run(objective, log)
 }
 
+/// An objective and its cutoff: see [`minimize`]. A search is compiled once for all objectives, which take far longer than a call of them.
+type Objective<'a> = &'a dyn Fn(&[f64], f64) -> f64;
+
 /// The whole state of a run, which may be interrupted and continued.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fminsearch {
@@ -176,7 +179,7 @@ impl Fminsearch {
     }
 
     /// Iteration 0: evaluates the start, unless this run has begun already. Returns whether there is a new row.
-    fn begin(&mut self, objective: &impl Fn(&[f64], f64) -> f64) -> Result<bool, Error> {
+    fn begin(&mut self, objective: Objective<'_>) -> Result<bool, Error> {
         if self.func_count > 0 {
             return Ok(false);
         }
@@ -189,7 +192,7 @@ impl Fminsearch {
     }
 
     /// One iteration.
-    fn iterate(&mut self, objective: &impl Fn(&[f64], f64) -> f64) {
+    fn iterate(&mut self, objective: Objective<'_>) {
         let complete = self.simplex.len() > self.scale.len();
         self.procedure = if complete { self.step(objective) } else { self.make_simplex(objective) };
         // Equal values keep their order, so a new vertex comes after the one it ties with.
@@ -240,7 +243,7 @@ impl Fminsearch {
     }
 
     /// The vertex at `x`: +∞ outside the box (without a call), and where the objective is not finite.
-    fn vertex(&mut self, objective: &impl Fn(&[f64], f64) -> f64, x: Vec<f64>, cutoff: f64) -> Vertex {
+    fn vertex(&mut self, objective: Objective<'_>, x: Vec<f64>, cutoff: f64) -> Vertex {
         let parameters = self.parameters(&x);
         if !parameters.iter().enumerate().all(|(j, p)| self.options.bounds_of(j).contain(*p)) {
             return Vertex { x, value: f64::INFINITY };
@@ -251,7 +254,7 @@ impl Fminsearch {
     }
 
     /// Iteration 1: the start and one more vertex along each coordinate.
-    fn make_simplex(&mut self, objective: &impl Fn(&[f64], f64) -> f64) -> Procedure {
+    fn make_simplex(&mut self, objective: Objective<'_>) -> Procedure {
         for j in 0..self.scale.len() {
             let mut x = self.simplex[0].x.clone();
             x[j] = stepped(x[j], self.scale[j], self.options.bounds_of(j));
@@ -273,7 +276,7 @@ impl Fminsearch {
     ///
     /// None of the cutoffs could be lower: a value just below them affects a decision or is kept. The values of the initial simplex
     /// and of a shrink are all kept, so they have no cutoff.
-    fn step(&mut self, objective: &impl Fn(&[f64], f64) -> f64) -> Procedure {
+    fn step(&mut self, objective: Objective<'_>) -> Procedure {
         let n = self.scale.len();
         let (best, second_worst) = (self.simplex[0].value, self.simplex[n - 1].value);
         let Vertex { x: worst_x, value: worst } = self.simplex[n].clone();
@@ -311,7 +314,7 @@ impl Fminsearch {
     }
 
     /// Moves every vertex v halfway to the best one, to v₁ + σ·(v − v₁), and evaluates them again in their order.
-    fn shrink(&mut self, objective: &impl Fn(&[f64], f64) -> f64) -> Procedure {
+    fn shrink(&mut self, objective: Objective<'_>) -> Procedure {
         for i in 1..self.simplex.len() {
             let ends = self.simplex[0].x.iter().zip(&self.simplex[i].x);
             let x = ends.map(|(v1, v)| v1 + SIGMA * (v - v1)).collect();

@@ -101,6 +101,18 @@ pub fn explore(
     global: &Global,
     progress: impl Fn() + Sync,
 ) -> Result<Vec<Descent>, GlobalError> {
+    explored(&objective, space, global, &progress)
+}
+
+/// An objective and its cutoff, for searches side by side.
+type Objective<'a> = &'a (dyn Fn(&[f64], f64) -> f64 + Sync);
+
+fn explored(
+    objective: Objective<'_>,
+    space: &Space,
+    global: &Global,
+    progress: &(dyn Fn() + Sync),
+) -> Result<Vec<Descent>, GlobalError> {
     let value = |x: &[f64], cutoff: f64| {
         let value = objective(x, cutoff);
         if value.is_nan() { f64::INFINITY } else { value }
@@ -123,7 +135,7 @@ pub fn explore(
     let known = (0..samples).map(|i| i < in_full || values[i] <= cutoff).collect();
     let apart = |i: usize, j: usize| space.distance(&place(i), &place(j)) >= global.apart;
     let again = |i: usize| value(&place(i), f64::INFINITY);
-    let starts = best_apart_above(values, known, again, global.searches, apart);
+    let starts = best_apart_above(values, known, &again, global.searches, &apart);
     if starts.is_empty() {
         return Err(GlobalError::NoStart { samples: global.samples });
     }
@@ -150,7 +162,7 @@ fn median(values: &[f64]) -> f64 {
 
 /// One CMA-ES search.
 fn search(
-    value: &(impl Fn(&[f64], f64) -> f64 + Sync),
+    value: Objective<'_>,
     space: &Space,
     global: &Global,
     start: Point,

@@ -32,6 +32,15 @@ pub fn surf_part(
     objective: impl Fn(usize, &[f64]) -> f64 + Sync,
     progress: impl Fn(u64) + Sync,
 ) -> Vec<f64> {
+    each_point(grid, points, &objective, &progress)
+}
+
+fn each_point(
+    grid: &Grid,
+    points: Range<usize>,
+    objective: &(dyn Fn(usize, &[f64]) -> f64 + Sync),
+    progress: &(dyn Fn(u64) + Sync),
+) -> Vec<f64> {
     assert!(points.end <= grid.len(), "points {points:?} of a grid of {}", grid.len());
     let done = AtomicU64::new(0);
     points
@@ -59,7 +68,7 @@ pub fn surf_part(
 /// If `values` is not one value for each point of `grid`.
 pub fn best_separated(grid: &Grid, values: &[f64], count: usize, min_steps: usize) -> Vec<usize> {
     assert_eq!(values.len(), grid.len(), "one value for each point of the grid");
-    best_apart(values, count, steps_apart(grid, min_steps))
+    best_apart(values, count, &steps_apart(grid, min_steps))
 }
 
 /// Whether two points of a grid are so many steps apart along some axis.
@@ -73,7 +82,7 @@ fn steps_apart(grid: &Grid, min_steps: usize) -> impl Fn(usize, usize) -> bool {
 }
 
 /// The numbers of the `count` smallest finite `values`, best first, any two of them `apart`; of equal values those with the lower numbers.
-fn best_apart(values: &[f64], count: usize, apart: impl Fn(usize, usize) -> bool) -> Vec<usize> {
+fn best_apart(values: &[f64], count: usize, apart: &dyn Fn(usize, usize) -> bool) -> Vec<usize> {
     let mut ranked: Vec<usize> = (0..values.len()).filter(|&i| values[i].is_finite()).collect();
     // The sort is stable, so equal values (−0 and 0 among them) stay in the order of their numbers.
     ranked.sort_by(|&a, &b| values[a].partial_cmp(&values[b]).unwrap_or(Ordering::Equal));
@@ -105,7 +114,7 @@ pub fn best_separated_above(
 ) -> Vec<(usize, f64)> {
     assert_eq!(lower.len(), grid.len(), "one value for each point of the grid");
     let none_known = vec![false; lower.len()];
-    best_apart_above(lower.to_vec(), none_known, value, count, steps_apart(grid, min_steps))
+    best_apart_above(lower.to_vec(), none_known, &value, count, &steps_apart(grid, min_steps))
 }
 
 /// [`best_apart`] by `values` of which all that are not `known` are lower bounds: of these only such are evaluated as may be among the best, some
@@ -113,12 +122,12 @@ pub fn best_separated_above(
 pub(crate) fn best_apart_above(
     mut values: Vec<f64>,
     mut known: Vec<bool>,
-    value: impl Fn(usize) -> f64 + Sync,
+    value: &(dyn Fn(usize) -> f64 + Sync),
     count: usize,
-    apart: impl Fn(usize, usize) -> bool,
+    apart: &dyn Fn(usize, usize) -> bool,
 ) -> Vec<(usize, f64)> {
     loop {
-        let best = best_apart(&values, count, &apart);
+        let best = best_apart(&values, count, apart);
         let open: Vec<usize> = best.iter().copied().filter(|&i| !known[i]).collect();
         if open.is_empty() {
             return best.into_iter().map(|i| (i, values[i])).collect();

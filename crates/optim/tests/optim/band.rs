@@ -281,7 +281,7 @@ fn contract_peaks_that_cannot_break_a_limit_are_not_searched() {
             count.fetch_add(1, Relaxed);
             Ok::<_, ()>([0.0, 1.0 - (omega - 6.2).powi(2)])
         };
-        let found = all_worst_over(&band, values, f64::INFINITY, [Some(f64::INFINITY), Some(limit)], true)
+        let found = all_worst_over(&band, &values, f64::INFINITY, [Some(f64::INFINITY), Some(limit)], true)
             .expect("values");
         (count.into_inner(), found[1].value)
     };

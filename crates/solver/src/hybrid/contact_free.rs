@@ -68,7 +68,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
     ///
     /// # Errors
     /// [`SolverError::TooManySteps`], [`SolverError::TooSlow`], [`SolverError::TooFast`], [`SolverError::NonFinite`].
-    pub fn propagate(&mut self, to: f64, observer: &mut impl Observer<N>) -> Result<(), SolverError> {
+    pub fn propagate(&mut self, to: f64, observer: &mut dyn Observer<N>) -> Result<(), SolverError> {
         let budget = self.budget(to, observer.looks());
         if self.system.structure().history().is_none() {
             return self.go(to, observer, budget);
@@ -97,7 +97,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
     fn over_samples(
         &mut self,
         to: f64,
-        observer: &mut impl Observer<N>,
+        observer: &mut dyn Observer<N>,
         budget: Budget,
     ) -> Result<(), SolverError> {
         let Some(pieces) = &self.samples else { return Ok(()) };
@@ -144,7 +144,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
         Budget::new(self.flow.pace(), self.max_steps, self.work.and(looks), [self.now.t, to])
     }
 
-    fn go(&mut self, to: f64, observer: &mut impl Observer<N>, budget: Budget) -> Result<(), SolverError> {
+    fn go(&mut self, to: f64, observer: &mut dyn Observer<N>, budget: Budget) -> Result<(), SolverError> {
         self.flow.check_step(self.now.t, to)?;
         let whole = self.flow.step();
         let mut clock = StepClock::new(self.now.t, whole);
@@ -190,7 +190,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
     fn go_reduced(
         &mut self,
         to: f64,
-        observer: &mut impl Observer<N>,
+        observer: &mut dyn Observer<N>,
         budget: Budget,
     ) -> Result<(), SolverError> {
         let Some(Reduced { flow, .. }) = self.reduced.as_deref() else { return Ok(()) };
@@ -317,7 +317,7 @@ mod tests {
     }
 
     impl Observer<2> for Energies<'_> {
-        fn segment(&mut self, _segment: &impl Segment<2>) {}
+        fn segment(&mut self, _segment: &dyn Segment<2>) {}
         fn steps(&mut self, steps: &Steps<'_, 2>) {
             for number in 0..=steps.count() {
                 let norm = LinearSystem::energy_norm(self.system, &steps.knot(number).y);

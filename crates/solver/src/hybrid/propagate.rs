@@ -18,7 +18,7 @@ impl Hybrid<'_> {
         &mut self,
         from: Motion,
         to: f64,
-        observer: &mut impl Observer<4>,
+        observer: &mut dyn Observer<4>,
     ) -> Result<Motion, SolverError> {
         self.flow.check_step(from.t, to)?;
         self.budget =
@@ -52,7 +52,7 @@ impl Hybrid<'_> {
         &mut self,
         from: Motion,
         to: f64,
-        observer: &mut impl Observer<4>,
+        observer: &mut dyn Observer<4>,
     ) -> Result<Motion, SolverError> {
         if let Some(rigid) = self.rigid.take() {
             let end = self.between_rigid(&rigid, from, to, observer);

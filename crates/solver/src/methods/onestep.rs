@@ -106,7 +106,7 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
     pub fn integrate<M: OneStep<N>>(
         &mut self,
         to: f64,
-        observer: &mut impl Observer<N>,
+        observer: &mut dyn Observer<N>,
     ) -> Result<(), SolverError> {
         self.allow(to);
         while self.now.t < to && !observer.satisfied() {
@@ -134,7 +134,7 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
     }
 
     /// Keeps track of touch-downs: at events, or from the states at the ends of steps.
-    fn follow_contact(&mut self, event: Option<Side>, observer: &mut impl Observer<N>) {
+    fn follow_contact(&mut self, event: Option<Side>, observer: &mut dyn Observer<N>) {
         let before = self.contact;
         let z = self.system.indentation(&self.now.y);
         self.leaving = event.is_some();

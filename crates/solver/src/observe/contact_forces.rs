@@ -72,7 +72,7 @@ impl<'a> ContactForces<'a> {
 }
 
 impl Observer<4> for ContactForces<'_> {
-    fn segment(&mut self, segment: &impl Segment<4>) {
+    fn segment(&mut self, segment: &dyn Segment<4>) {
         if segment.in_flight() {
             return;
         }

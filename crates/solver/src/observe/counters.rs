@@ -8,7 +8,9 @@ use retune_model::Side;
 pub struct TouchDowns(pub [u64; 2]);
 
 impl<const N: usize> Observer<N> for TouchDowns {
-    const WATCHES_MOTION: bool = false;
+    fn watches_motion(&self) -> bool {
+        false
+    }
     fn touch_down(&mut self, _t: f64, side: Side) {
         self.0[side as usize] += 1;
     }
@@ -19,7 +21,9 @@ impl<const N: usize> Observer<N> for TouchDowns {
 pub struct TouchDownTimes(pub Vec<(f64, Side)>);
 
 impl<const N: usize> Observer<N> for TouchDownTimes {
-    const WATCHES_MOTION: bool = false;
+    fn watches_motion(&self) -> bool {
+        false
+    }
     fn touch_down(&mut self, t: f64, side: Side) {
         self.0.push((t, side));
     }

@@ -82,11 +82,11 @@ impl<'a> DisplacementRange<'a> {
 }
 
 impl Observer<4> for DisplacementRange<'_> {
-    fn segment(&mut self, segment: &impl Segment<4>) {
+    fn segment(&mut self, segment: &dyn Segment<4>) {
         self.ends.segment(segment);
         self.forces.segment(segment);
     }
-    fn path(&mut self, path: &impl Path<4>) {
+    fn path(&mut self, path: &dyn Path<4>) {
         self.ends.path(path);
         self.forces.path(path);
     }

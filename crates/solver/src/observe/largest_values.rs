@@ -64,12 +64,12 @@ impl<'a> LargestValues<'a> {
 }
 
 impl Observer<4> for LargestValues<'_> {
-    fn segment(&mut self, segment: &impl Segment<4>) {
+    fn segment(&mut self, segment: &dyn Segment<4>) {
         self.energy.segment(segment);
         self.motions.segment(segment);
         self.range.segment(segment);
     }
-    fn path(&mut self, path: &impl Path<4>) {
+    fn path(&mut self, path: &dyn Path<4>) {
         self.energy.path(path);
         self.motions.path(path);
         self.range.path(path);

@@ -42,10 +42,10 @@ impl<Q> Magnitude<Q> {
 }
 
 impl<const N: usize, Q: Quantity<N>> Observer<N> for Magnitude<Q> {
-    fn segment(&mut self, segment: &impl Segment<N>) {
+    fn segment(&mut self, segment: &dyn Segment<N>) {
         self.each(|one| one.segment(segment));
     }
-    fn path(&mut self, path: &impl Path<N>) {
+    fn path(&mut self, path: &dyn Path<N>) {
         self.each(|one| one.path(path));
     }
     fn steps(&mut self, steps: &Steps<'_, N>) {

@@ -30,7 +30,7 @@ pub use counters::{TouchDownTimes, TouchDowns};
 pub use displacement_range::DisplacementRange;
 pub use largest_values::LargestValues;
 pub use magnitude::Magnitude;
-pub use observer::{Impact, MOST_KNOTS, Observer, Path, Unobserved};
+pub use observer::{Impact, MOST_KNOTS, Observer, Part, Path, Unobserved};
 pub use quantity::{BareEnergy, DamperEnergy, PrimaryEnergy, Quantity, RelativePosition};
 pub use running_maximum::RunningMaximum;
 pub use structure::{Structure, StructureMotion};

@@ -13,7 +13,7 @@ pub trait Path<const N: usize> {
     /// Number of segments, one less than there are knots, of which there are at most [`MOST_KNOTS`].
     fn pieces(&self) -> usize;
     /// Visits the times (s, since the first) and states at the knots in their order.
-    fn states(&self, visit: impl FnMut(f64, &[f64; N]));
+    fn states(&self, visit: &mut dyn FnMut(f64, &[f64; N]));
     /// The states at both ends.
     fn ends(&self) -> [&[f64; N]; 2];
     /// A bound on how far a quantity that depends on the state alone exceeds the larger of its values at both ends; infinite where none is
@@ -23,10 +23,18 @@ pub trait Path<const N: usize> {
     fn second_derivative(&self, form: &Form<N>) -> f64;
     /// A bound on the first time derivative of a quantity; infinite where none is known.
     fn first_derivative(&self, form: &Form<N>) -> f64;
-    /// Hands the segment that follows a knot to an observer.
-    fn show(&self, piece: usize, observer: &mut impl Observer<N>);
+    /// Shows the motion that follows a knot, up to the next one.
+    fn show(&self, piece: usize, see: &mut dyn FnMut(Part<'_, N>));
     /// The contact that it is, as linear equations for small changes; with what a small loss would take away, if it is asked for.
     fn linearised(&self, loss: bool) -> LinearContact;
+}
+
+/// What a [`Path`] shows of itself.
+pub enum Part<'a, const N: usize> {
+    /// A segment of the motion.
+    Segment(&'a dyn Segment<N>),
+    /// The slope of the force jumps: see [`Observer::seam`].
+    Seam,
 }
 
 /// Most knots of a [`Path`].
@@ -50,37 +58,37 @@ pub struct Impact<const N: usize> {
 /// Follows a run. A pair of observers, nested as deep as need be, is an observer; so are an array and an `Option` of one.
 pub trait Observer<const N: usize> {
     /// Whether it looks at the motion. An observer of events alone sets this to `false`, and no segment is computed for it.
-    const WATCHES_MOTION: bool = true;
+    fn watches_motion(&self) -> bool {
+        true
+    }
     /// A segment of the motion has been computed.
-    fn segment(&mut self, _segment: &impl Segment<N>) {}
+    fn segment(&mut self, _segment: &dyn Segment<N>) {}
     /// Several segments at once. To take them one by one is always right.
-    #[inline(always)]
-    fn path(&mut self, path: &impl Path<N>)
-    where
-        Self: Sized,
-    {
-        if Self::WATCHES_MOTION {
+    fn path(&mut self, path: &dyn Path<N>) {
+        if self.watches_motion() {
             for piece in 0..path.pieces() {
-                path.show(piece, self);
+                path.show(piece, &mut |part| self.see(part));
             }
         }
     }
+    /// A part of such a path.
+    fn see(&mut self, part: Part<'_, N>) {
+        match part {
+            Part::Segment(segment) => self.segment(segment),
+            Part::Seam => self.seam(),
+        }
+    }
     /// Several whole steps of an exact flow at once. To take them one by one is always right.
-    #[inline(always)]
-    fn steps(&mut self, steps: &Steps<'_, N>)
-    where
-        Self: Sized,
-    {
-        if Self::WATCHES_MOTION {
+    fn steps(&mut self, steps: &Steps<'_, N>) {
+        if self.watches_motion() {
             for number in 0..steps.count() {
                 self.segment(&steps.step(number));
             }
         }
     }
     /// Whether it provably needs nothing of these pieces of a record: then they are not handed over.
-    #[inline(always)]
     fn skips(&self, _block: &Block<N>) -> bool {
-        !Self::WATCHES_MOTION
+        !self.watches_motion()
     }
     /// The damper has touched a wall at time `t` (s).
     fn touch_down(&mut self, _t: f64, _side: Side) {}
@@ -108,16 +116,20 @@ pub trait Observer<const N: usize> {
 pub struct Unobserved;
 
 impl<const N: usize> Observer<N> for Unobserved {
-    const WATCHES_MOTION: bool = false;
+    fn watches_motion(&self) -> bool {
+        false
+    }
 }
 
 impl<const N: usize, A: Observer<N>, B: Observer<N>> Observer<N> for (A, B) {
-    const WATCHES_MOTION: bool = A::WATCHES_MOTION || B::WATCHES_MOTION;
-    fn segment(&mut self, segment: &impl Segment<N>) {
+    fn watches_motion(&self) -> bool {
+        self.0.watches_motion() || self.1.watches_motion()
+    }
+    fn segment(&mut self, segment: &dyn Segment<N>) {
         self.0.segment(segment);
         self.1.segment(segment);
     }
-    fn path(&mut self, path: &impl Path<N>) {
+    fn path(&mut self, path: &dyn Path<N>) {
         self.0.path(path);
         self.1.path(path);
     }
@@ -151,12 +163,14 @@ impl<const N: usize, A: Observer<N>, B: Observer<N>> Observer<N> for (A, B) {
     }
 }
 
-impl<const N: usize, O: Observer<N>> Observer<N> for &mut O {
-    const WATCHES_MOTION: bool = O::WATCHES_MOTION;
-    fn segment(&mut self, segment: &impl Segment<N>) {
+impl<const N: usize, O: Observer<N> + ?Sized> Observer<N> for &mut O {
+    fn watches_motion(&self) -> bool {
+        (**self).watches_motion()
+    }
+    fn segment(&mut self, segment: &dyn Segment<N>) {
         (**self).segment(segment);
     }
-    fn path(&mut self, path: &impl Path<N>) {
+    fn path(&mut self, path: &dyn Path<N>) {
         (**self).path(path);
     }
     fn steps(&mut self, steps: &Steps<'_, N>) {
@@ -189,11 +203,13 @@ impl<const N: usize, O: Observer<N>> Observer<N> for &mut O {
 macro_rules! for_each_in {
     ($container:ty $(, const $count:ident)?) => {
         impl<const N: usize, O: Observer<N>, $(const $count: usize)?> Observer<N> for $container {
-            const WATCHES_MOTION: bool = O::WATCHES_MOTION;
-            fn segment(&mut self, segment: &impl Segment<N>) {
+            fn watches_motion(&self) -> bool {
+                self.iter().any(|observer| observer.watches_motion())
+            }
+            fn segment(&mut self, segment: &dyn Segment<N>) {
                 self.iter_mut().for_each(|observer| observer.segment(segment));
             }
-            fn path(&mut self, path: &impl Path<N>) {
+            fn path(&mut self, path: &dyn Path<N>) {
                 self.iter_mut().for_each(|observer| observer.path(path));
             }
             fn steps(&mut self, steps: &Steps<'_, N>) {

@@ -49,7 +49,7 @@ pub trait Quantity<const N: usize> {
 /// A quantity with its first two time derivatives at a moment of a segment.
 #[inline(always)]
 pub fn rates_in<const N: usize>(
-    segment: &impl Segment<N>,
+    segment: &dyn Segment<N>,
     at: &Knot<N>,
     quantity: &impl Quantity<N>,
 ) -> [f64; 3] {

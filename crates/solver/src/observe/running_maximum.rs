@@ -56,7 +56,7 @@ impl<Q> RunningMaximum<Q> {
     }
 
     /// [`Observer::path`] of a quantity that depends on the force; `values` are those without it.
-    fn forced_path<const N: usize>(&mut self, path: &impl Path<N>, times: &[f64], values: &[f64])
+    fn forced_path<const N: usize>(&mut self, path: &dyn Path<N>, times: &[f64], values: &[f64])
     where
         Q: Quantity<N>,
     {
@@ -66,7 +66,7 @@ impl<Q> RunningMaximum<Q> {
             let most = 0.5 * (values[0] + values[1] + first * (times[1] - times[0])) + force;
             let dropped = most <= self.search.record.value;
             if !dropped {
-                path.show(piece, self);
+                path.show(piece, &mut |part| Observer::<N>::see(self, part));
             }
         }
     }
@@ -84,7 +84,7 @@ where
     Q: Quantity<N>,
 {
     #[inline(always)]
-    fn segment(&mut self, segment: &impl Segment<N>) {
+    fn segment(&mut self, segment: &dyn Segment<N>) {
         let energy = segment.energy();
         if energy.is_finite() && self.search.quantity.form().most(energy) <= self.search.record.value {
             self.last = None;
@@ -117,7 +117,7 @@ where
     /// that contact forces enter has no second derivative, but a first of at most some `m`: it rises above the mean of two values `t`
     /// seconds apart by at most `m t / 2`.
     #[inline(always)]
-    fn path(&mut self, path: &impl Path<N>) {
+    fn path(&mut self, path: &dyn Path<N>) {
         let quantity = &self.search.quantity;
         let mut rise = f64::INFINITY;
         if !quantity.is_forced() {
@@ -129,7 +129,7 @@ where
         }
         let (mut times, mut values) = ([0.0; MOST_KNOTS], [f64::NEG_INFINITY; MOST_KNOTS]);
         let mut count = 0;
-        path.states(|t, y| {
+        path.states(&mut |t, y| {
             values[count] = self.search.quantity.value(y);
             times[count] = t;
             count += 1;
@@ -149,7 +149,7 @@ where
             let most = values[piece].max(values[piece + 1]) + rise;
             let dropped = most <= self.search.record.value || most < largest;
             if !dropped {
-                path.show(piece, self);
+                path.show(piece, &mut |part| Observer::<N>::see(self, part));
             }
         }
     }

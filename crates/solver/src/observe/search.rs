@@ -97,7 +97,7 @@ impl<Q> Search<Q> {
     /// Begins the search of a segment.
     pub fn begin<const N: usize>(
         &mut self,
-        segment: &impl Segment<N>,
+        segment: &dyn Segment<N>,
         a: &Place<N>,
         b: &Place<N>,
         remainder: f64,
@@ -110,7 +110,7 @@ impl<Q> Search<Q> {
     }
 
     /// A bound on the largest value between two places that is coarse, but holds where [`Self::quintic_error`] is infinite.
-    pub fn coarse_bound<const N: usize>(&self, segment: &impl Segment<N>, a: &Place<N>, b: &Place<N>) -> f64
+    pub fn coarse_bound<const N: usize>(&self, segment: &dyn Segment<N>, a: &Place<N>, b: &Place<N>) -> f64
     where
         Q: Quantity<N>,
     {
@@ -119,13 +119,8 @@ impl<Q> Search<Q> {
     }
 
     /// Looks for a maximum above the record between two places. `remainder` bounds how far the quantity leaves its quintic there.
-    fn search<const N: usize>(
-        &mut self,
-        segment: &impl Segment<N>,
-        a: &Place<N>,
-        b: &Place<N>,
-        remainder: f64,
-    ) where
+    fn search<const N: usize>(&mut self, segment: &dyn Segment<N>, a: &Place<N>, b: &Place<N>, remainder: f64)
+    where
         Q: Quantity<N>,
     {
         let coefficients = quintic(f64x4::splat(b.0 - a.0), a.2.map(f64x4::splat), b.2.map(f64x4::splat));
@@ -152,7 +147,7 @@ impl<Q> Search<Q> {
     /// a sharper one first.
     fn halve<const N: usize>(
         &mut self,
-        segment: &impl Segment<N>,
+        segment: &dyn Segment<N>,
         a: &Place<N>,
         b: &Place<N>,
         mut remainder: f64,
@@ -192,7 +187,7 @@ impl<Q> Search<Q> {
         }
     }
 
-    fn look<const N: usize>(&mut self, segment: &impl Segment<N>, theta: f64) -> Place<N>
+    fn look<const N: usize>(&mut self, segment: &dyn Segment<N>, theta: f64) -> Place<N>
     where
         Q: Quantity<N>,
     {
@@ -204,7 +199,7 @@ impl<Q> Search<Q> {
     /// A bound on how far the quantity leaves its quintic between two places.
     pub fn quintic_error<const N: usize>(
         &self,
-        segment: &impl Segment<N>,
+        segment: &dyn Segment<N>,
         a: &Place<N>,
         b: &Place<N>,
         sharp: bool,
@@ -225,7 +220,7 @@ impl<Q> Search<Q> {
     /// The only maximum between two places, where the quantity is concave: Newton's method on the slope, kept inside by bisection.
     /// The quantity is flat there: an error δ of the place costs δ², which the parabola corrects by `slope² / 2|curvature|`, so that
     /// an error of order δ³ is left.
-    fn climb<const N: usize>(&mut self, segment: &impl Segment<N>, a: &Place<N>, b: &Place<N>)
+    fn climb<const N: usize>(&mut self, segment: &dyn Segment<N>, a: &Place<N>, b: &Place<N>)
     where
         Q: Quantity<N>,
     {

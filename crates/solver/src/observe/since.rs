@@ -25,8 +25,10 @@ impl<O> Since<O> {
 }
 
 impl<O: Observer<4>> Observer<4> for Since<O> {
-    const WATCHES_MOTION: bool = O::WATCHES_MOTION;
-    fn segment(&mut self, segment: &impl Segment<4>) {
+    fn watches_motion(&self) -> bool {
+        self.observer.watches_motion()
+    }
+    fn segment(&mut self, segment: &dyn Segment<4>) {
         let ends = segment.ends().map(|knot| knot.t);
         self.began |= ends[0] >= self.from;
         if self.began {
@@ -35,11 +37,11 @@ impl<O: Observer<4>> Observer<4> for Since<O> {
             self.observer.segment(&Tail::new(segment, self.from));
         }
     }
-    fn path(&mut self, path: &impl Path<4>) {
+    fn path(&mut self, path: &dyn Path<4>) {
         if self.began {
             self.observer.path(path);
         } else {
-            (0..path.pieces()).for_each(|piece| path.show(piece, self));
+            (0..path.pieces()).for_each(|piece| path.show(piece, &mut |part| self.see(part)));
         }
     }
     fn steps(&mut self, steps: &Steps<'_, 4>) {
@@ -72,14 +74,14 @@ impl<O: Observer<4>> Observer<4> for Since<O> {
 }
 
 /// The part of a segment after a moment inside it.
-struct Tail<'a, S> {
-    whole: &'a S,
+struct Tail<'a> {
+    whole: &'a dyn Segment<4>,
     skipped: f64,
     begin: Knot<4>,
 }
 
-impl<'a, S: Segment<4>> Tail<'a, S> {
-    fn new(whole: &'a S, t: f64) -> Self {
+impl<'a> Tail<'a> {
+    fn new(whole: &'a dyn Segment<4>, t: f64) -> Self {
         let (mut before, mut skipped) = (0.0, whole.length());
         for _ in 0..f64::MANTISSA_DIGITS {
             let middle = 0.5 * (before + skipped);
@@ -89,7 +91,7 @@ impl<'a, S: Segment<4>> Tail<'a, S> {
     }
 }
 
-impl<S: Segment<4>> Segment<4> for Tail<'_, S> {
+impl Segment<4> for Tail<'_> {
     fn ends(&self) -> [&Knot<4>; 2] {
         [&self.begin, self.whole.ends()[1]]
     }

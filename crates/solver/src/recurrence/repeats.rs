@@ -117,7 +117,7 @@ impl Repeats<'_> {
 }
 
 impl Observer<4> for Repeats<'_> {
-    fn segment(&mut self, segment: &impl Segment<4>) {
+    fn segment(&mut self, segment: &dyn Segment<4>) {
         let mut latest = None;
         let t = self.passing.states(segment, |state| latest = Some(state));
         if let Some(state) = latest.filter(|_| self.known.is_none()) {
@@ -125,7 +125,7 @@ impl Observer<4> for Repeats<'_> {
         }
     }
     /// A moment within a contact of some milliseconds is put off to its end, period after period: it would cost more to look inside.
-    fn path(&mut self, _path: &impl Path<4>) {}
+    fn path(&mut self, _path: &dyn Path<4>) {}
     fn steps(&mut self, steps: &Steps<'_, 4>) {
         if self.passing.pass_by(steps.time(steps.count())) {
             self.among(steps);
@@ -145,14 +145,13 @@ pub fn has_room(period: f64, from: f64, to: f64) -> bool {
 /// Follows a structure and its damper from their start at t = 0 to the end of the window or until the motion repeats; it is then observed
 /// from `late` (s) on, or from the start of the window, whichever is later, for as many periods as it takes to repeat. Returns the last state
 /// that was reached, and the work.
-#[inline(always)]
 pub fn follow_until_it_repeats(
     system: &Coupled,
     window: Window,
     late: f64,
     settings: &Settings,
-    before: &mut impl Observer<4>,
-    observer: &mut impl Observer<4>,
+    before: &mut dyn Observer<4>,
+    observer: &mut dyn Observer<4>,
 ) -> Result<([f64; 4], Work), SolverError> {
     let period = TAU / system.bare().frequency();
     let from = window.from.max(late);

@@ -2,7 +2,7 @@
 
 use crate::linear::steps::Steps;
 use crate::motion::segment::Segment;
-use crate::observe::observer::{Observer, Path};
+use crate::observe::observer::{Observer, Part, Path};
 use std::collections::VecDeque;
 
 /// Whole periods of the force, as they pass.
@@ -34,7 +34,7 @@ impl Periods {
     }
 
     /// The states at those that pass in a segment; returns when the latest has passed, s.
-    pub fn states(&mut self, segment: &impl Segment<4>, mut keep: impl FnMut([f64; 4])) -> f64 {
+    pub fn states(&mut self, segment: &dyn Segment<4>, mut keep: impl FnMut([f64; 4])) -> f64 {
         let [begin, end] = segment.ends();
         while self.next() <= end.t {
             keep(match self.next() {
@@ -68,7 +68,7 @@ impl PoincareSection {
 }
 
 impl Observer<4> for PoincareSection {
-    fn segment(&mut self, segment: &impl Segment<4>) {
+    fn segment(&mut self, segment: &dyn Segment<4>) {
         let Self { periods, most, states } = self;
         periods.states(segment, |state| {
             if states.len() == *most {
@@ -77,26 +77,21 @@ impl Observer<4> for PoincareSection {
             states.push_back(state);
         });
     }
-    fn path(&mut self, path: &impl Path<4>) {
+    fn path(&mut self, path: &dyn Path<4>) {
         // A path does not say how long it is; its last piece does.
-        let mut end = End(f64::NEG_INFINITY);
-        path.show(path.pieces() - 1, &mut end);
-        if self.periods.pass_by(end.0) {
-            (0..path.pieces()).for_each(|piece| path.show(piece, self));
+        let mut end = f64::NEG_INFINITY;
+        path.show(path.pieces() - 1, &mut |part| {
+            if let Part::Segment(segment) = part {
+                end = segment.ends()[1].t;
+            }
+        });
+        if self.periods.pass_by(end) {
+            (0..path.pieces()).for_each(|piece| path.show(piece, &mut |part| self.see(part)));
         }
     }
     fn steps(&mut self, steps: &Steps<'_, 4>) {
         if self.periods.pass_by(steps.time(steps.count())) {
             (0..steps.count()).for_each(|number| self.segment(&steps.step(number)));
         }
-    }
-}
-
-/// When the last piece ended, s.
-struct End(f64);
-
-impl Observer<4> for End {
-    fn segment(&mut self, segment: &impl Segment<4>) {
-        self.0 = segment.ends()[1].t;
     }
 }

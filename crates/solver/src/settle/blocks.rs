@@ -110,12 +110,12 @@ impl<'a> Blocks<'a> {
 }
 
 impl Observer<4> for Blocks<'_> {
-    fn segment(&mut self, segment: &impl Segment<4>) {
+    fn segment(&mut self, segment: &dyn Segment<4>) {
         self.roll(segment.ends()[0].t);
         self.section.segment(segment);
         self.now.segment(segment);
     }
-    fn path(&mut self, path: &impl Path<4>) {
+    fn path(&mut self, path: &dyn Path<4>) {
         self.section.path(path);
         self.now.path(path);
     }

@@ -138,7 +138,7 @@ static GAUSS: LazyLock<Gauss> = LazyLock::new(|| {
 });
 
 /// A piece of a contact that is followed step by step, at the nodes of Gauss's rule in its own coordinate.
-pub(super) fn nodes(piece: &impl Segment<4>) -> Nodes {
+pub(super) fn nodes(piece: &dyn Segment<4>) -> Nodes {
     let [start, end] = piece.ends();
     let Gauss { nodes, .. } = &*GAUSS;
     let (mut times, mut rates) = ([0.0; FOLLOWED], [0.0; FOLLOWED]);

@@ -79,7 +79,7 @@ impl<'a> Tangent<'a> {
         &mut self,
         from: Motion,
         to: f64,
-        observer: &mut impl Observer<4>,
+        observer: &mut dyn Observer<4>,
     ) -> Result<Transition, SolverError> {
         let mut course = Course::new(&self.prepared, from);
         let end = self.follower.propagate(from, to, &mut (&mut course, observer))?;
@@ -225,7 +225,7 @@ impl<'a> Course<'a> {
 }
 
 impl Observer<4> for Course<'_> {
-    fn segment(&mut self, segment: &impl Segment<4>) {
+    fn segment(&mut self, segment: &dyn Segment<4>) {
         if segment.in_flight() {
             return;
         }
@@ -262,7 +262,7 @@ impl Observer<4> for Course<'_> {
     fn follows_contacts(&self) -> bool {
         true
     }
-    fn path(&mut self, path: &impl Path<4>) {
+    fn path(&mut self, path: &dyn Path<4>) {
         self.cross(path.linearised(self.parameters.contains(&Parameter::Lambda)));
     }
     fn steps(&mut self, _steps: &Steps<'_, 4>) {}

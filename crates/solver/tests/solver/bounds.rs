@@ -35,7 +35,7 @@ impl<Q: Quantity<4>> Held<Q> {
 }
 
 impl<Q: Quantity<4>> Observer<4> for Held<Q> {
-    fn segment(&mut self, segment: &impl Segment<4>) {
+    fn segment(&mut self, segment: &dyn Segment<4>) {
         let (h, [first, _]) = (segment.length(), segment.ends());
         let kind = usize::from(first.clock != [1.0, 0.0]);
         // The last digits of a contact's ends are another computation's: the piece is taken between moments of its own.
@@ -69,7 +69,7 @@ impl<Q: Quantity<4>> Observer<4> for Held<Q> {
             assert!(value <= self.highest + rounding, "{value:e} {:e}", self.highest);
         }
     }
-    fn path(&mut self, path: &impl Path<4>) {
+    fn path(&mut self, path: &dyn Path<4>) {
         self.second = path.second_derivative(self.quantity.form());
         self.contacts[1] += 1;
         self.contacts[0] += u64::from(self.second.is_finite());
@@ -77,7 +77,7 @@ impl<Q: Quantity<4>> Observer<4> for Held<Q> {
         let rise = path.rise(self.quantity.form());
         self.highest = begin.max(end) + rise;
         self.level += u64::from(rise < 0.1 * begin.max(end));
-        (0..path.pieces()).for_each(|piece| path.show(piece, self));
+        (0..path.pieces()).for_each(|piece| path.show(piece, &mut |part| self.see(part)));
         (self.second, self.highest) = (f64::INFINITY, f64::INFINITY);
     }
 }
@@ -160,9 +160,9 @@ struct Rises<'a, Q, E> {
 }
 
 impl<Q: Quantity<4>, E: Fn(&Numbers, &OverContact, f64) -> f64> Observer<4> for Rises<'_, Q, E> {
-    fn path(&mut self, path: &impl Path<4>) {
+    fn path(&mut self, path: &dyn Path<4>) {
         let (&touch, mut duration) = (path.ends()[0], 0.0);
-        path.states(|t, _| duration = t);
+        path.states(&mut |t, _| duration = t);
         let to = |side: Side| (touch[2] - touch[0] - self.system.wall(side)).abs();
         let side = if to(Side::Primary) < to(Side::Obstacle) { Side::Primary } else { Side::Obstacle };
         let equations = self.system.regularised_contact(side);

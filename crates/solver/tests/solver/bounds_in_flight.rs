@@ -13,7 +13,7 @@ struct Errors<Q> {
 }
 
 impl<Q: Quantity<4>> Observer<4> for Errors<Q> {
-    fn segment(&mut self, segment: &impl Segment<4>) {
+    fn segment(&mut self, segment: &dyn Segment<4>) {
         // The bounds in contacts are tested beside their definition (`retune_model::RegularisedContact::growth`).
         if !segment.in_flight() {
             return;

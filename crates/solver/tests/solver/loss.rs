@@ -60,7 +60,7 @@ struct After<'a> {
 }
 
 impl Observer<4> for After<'_> {
-    fn segment(&mut self, segment: &impl Segment<4>) {
+    fn segment(&mut self, segment: &dyn Segment<4>) {
         let [_, end] = segment.ends();
         if end.clock[0] == 0.0 && end.clock[1] < 0.0 {
             self.parted = Some(-2.0 * end.clock[1]);
@@ -98,7 +98,7 @@ const GAUSS: [(f64, f64); 4] = [
 ];
 
 impl Observer<4> for Balance<'_> {
-    fn segment(&mut self, segment: &impl Segment<4>) {
+    fn segment(&mut self, segment: &dyn Segment<4>) {
         const PARTS: u32 = 4;
         let half = 0.5 * segment.length() / f64::from(PARTS);
         let contact = segment.ends()[0].clock != [1.0, 0.0];

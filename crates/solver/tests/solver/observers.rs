@@ -8,7 +8,7 @@ use retune_solver::{Follower, Hybrid, Method, Motion, Phase, Settings};
 use retune_testkit::scenes::SSVI;
 
 /// Follows the SSVI from rest for 20 s, or until the observer is satisfied.
-fn follow(system: &Coupled, observer: &mut impl Observer<4>) -> Motion {
+fn follow(system: &Coupled, observer: &mut dyn Observer<4>) -> Motion {
     let rest = Motion { t: 0.0, y: system.rest(), phase: Phase::Flight };
     Hybrid::new(system, 1e-8, 20.0, 1_000_000).propagate(rest, 20.0, observer).expect("a run")
 }
@@ -60,7 +60,7 @@ fn invariant_a_run_stops_as_soon_as_one_of_its_observers_is_satisfied() {
 struct Enough(u32);
 
 impl Observer<4> for Enough {
-    fn segment(&mut self, _segment: &impl Segment<4>) {
+    fn segment(&mut self, _segment: &dyn Segment<4>) {
         self.0 = self.0.saturating_sub(1);
     }
     fn satisfied(&self) -> bool {

@@ -53,7 +53,7 @@ type Seen = ([f64; 8], [f64; 4], u64);
 struct FollowsContacts(bool);
 
 impl Observer<4> for FollowsContacts {
-    fn segment(&mut self, _segment: &impl Segment<4>) {}
+    fn segment(&mut self, _segment: &dyn Segment<4>) {}
     fn follows_contacts(&self) -> bool {
         self.0
     }

@@ -30,7 +30,7 @@ impl<Q: Quantity<4>> Everywhere<Q> {
 }
 
 impl<Q: Quantity<4>> Observer<4> for Everywhere<Q> {
-    fn segment(&mut self, segment: &impl Segment<4>) {
+    fn segment(&mut self, segment: &dyn Segment<4>) {
         let (h, [first, last]) = (segment.length(), segment.ends());
         // Contact pieces are a ninth of a contact, or less.
         let passes = if first.clock == [1.0, 0.0] { self.passes } else { self.passes / 3 };
@@ -97,7 +97,7 @@ fn relative(missed: f64, doubt: f64, size: f64) -> Missed {
 struct ContactPieces(u64);
 
 impl Observer<4> for ContactPieces {
-    fn segment(&mut self, segment: &impl Segment<4>) {
+    fn segment(&mut self, segment: &dyn Segment<4>) {
         self.0 += u64::from(segment.ends()[0].clock != [1.0, 0.0]);
     }
 }

@@ -1,11 +1,12 @@
 //! `fminsearch` as a solver of argmin, whose executor drives it.
 
-use super::{Error, Fminsearch, Minimum, Row, Stop};
+use super::{Error, Fminsearch, Minimum, Objective, Row, Stop};
 use argmin::core::{
     Error as ArgminError, Executor, IterState, KV, Problem, Solver, TerminationReason, TerminationStatus,
 };
 use std::ops::ControlFlow;
 
+type Log<'a> = &'a mut dyn FnMut(&Row) -> ControlFlow<()>;
 type State = IterState<Vec<f64>, (), (), (), (), f64>;
 
 impl Fminsearch {
@@ -17,8 +18,12 @@ impl Fminsearch {
     pub fn run(
         &mut self,
         objective: impl Fn(&[f64], f64) -> f64,
-        log: impl FnMut(&Row) -> ControlFlow<()>,
+        mut log: impl FnMut(&Row) -> ControlFlow<()>,
     ) -> Result<Minimum, Error> {
+        self.drive(&objective, &mut log)
+    }
+
+    fn drive(&mut self, objective: Objective<'_>, log: Log<'_>) -> Result<Minimum, Error> {
         let solver = Logged { run: self, log, interrupted: false };
         Executor::new(objective, solver)
             .ctrlc(false)
@@ -31,13 +36,13 @@ impl Fminsearch {
 }
 
 /// A run whose rows are logged.
-struct Logged<'a, L> {
+struct Logged<'a> {
     run: &'a mut Fminsearch,
-    log: L,
+    log: Log<'a>,
     interrupted: bool,
 }
 
-impl<L: FnMut(&Row) -> ControlFlow<()>> Logged<'_, L> {
+impl Logged<'_> {
     /// Logs the last row, and passes it on as argmin's state.
     fn report(&mut self, is_new: bool, state: State) -> (State, Option<KV>) {
         let row = self.run.row();
@@ -48,23 +53,23 @@ impl<L: FnMut(&Row) -> ControlFlow<()>> Logged<'_, L> {
     }
 }
 
-impl<O, L> Solver<O, State> for Logged<'_, L>
-where
-    O: Fn(&[f64], f64) -> f64,
-    L: FnMut(&Row) -> ControlFlow<()>,
-{
+impl<'a> Solver<Objective<'a>, State> for Logged<'_> {
     fn name(&self) -> &str {
         "fminsearch"
     }
 
-    fn init(&mut self, problem: &mut Problem<O>, state: State) -> Result<(State, Option<KV>), ArgminError> {
+    fn init(
+        &mut self,
+        problem: &mut Problem<Objective<'a>>,
+        state: State,
+    ) -> Result<(State, Option<KV>), ArgminError> {
         let is_new = problem.problem("iterations", |objective| Ok(self.run.begin(objective)?))?;
         Ok(self.report(is_new, state))
     }
 
     fn next_iter(
         &mut self,
-        problem: &mut Problem<O>,
+        problem: &mut Problem<Objective<'a>>,
         state: State,
     ) -> Result<(State, Option<KV>), ArgminError> {
         problem.problem("iterations", |objective| {

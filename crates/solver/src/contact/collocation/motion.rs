@@ -10,7 +10,7 @@ use crate::motion::form::Form;
 use crate::motion::knot::Knot;
 use crate::motion::lanes::each;
 use crate::motion::linearised::{LinearContact, MOMENTS};
-use crate::observe::observer::{Observer, Path};
+use crate::observe::observer::{Part, Path};
 use nalgebra::DMatrix;
 use retune_model::{Excitation, Growth, OverContact, RegularisedContact, RegularisedState};
 use wide::f64x4;
@@ -207,12 +207,9 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
         N + 1
     }
 
-    #[inline(always)]
-    fn states(&self, mut visit: impl FnMut(f64, &[f64; 4])) {
+    fn states(&self, visit: &mut dyn FnMut(f64, &[f64; 4])) {
         visit(0.0, &self.touch.y);
-        // Written out, so that the compiler drops the components that a visitor does not use.
-        let [x1, v1] = [self.component(0), self.component(1)];
-        let [x2, v2] = [self.component(2), self.component(3)];
+        let [x1, v1, x2, v2] = [0, 1, 2, 3].map(|i| self.component(i));
         for i in 0..N {
             let state = [node(&x1, i), node(&v1, i), node(&x2, i), node(&v2, i)];
             visit(self.duration * node(&self.rule.times, i), &state);
@@ -243,7 +240,7 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
     }
 
     /// The segment between two knots is integrated from the first of them, and cut where the force bends.
-    fn show(&self, piece: usize, observer: &mut impl Observer<4>) {
+    fn show(&self, piece: usize, see: &mut dyn FnMut(Part<'_, 4>)) {
         let [mut begin, end] = [self.knot(piece), self.knot(piece + 1)];
         let [mut now, last] = [piece, piece + 1].map(|knot| self.time(knot) * self.duration);
         let mut from = self.of.equations.regularise(&begin.y);
@@ -261,9 +258,10 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
             let (theta, mut bent) = at_elapsed(|theta| whole.advance(theta), length, time - now);
             let mut at = knot(&equations, begin.t, &bent);
             if theta > 0.0 {
-                observer.segment(&self.piece(&equations, (&from, &derivative), theta, [begin, at]));
+                let before = self.piece(&equations, (&from, &derivative), theta, [begin, at]);
+                see(Part::Segment(&before));
             }
-            observer.seam();
+            see(Part::Seam);
             at.excitation[1] += jump;
             bent[TIME] = 0.0;
             (begin, now, from, length) = (at, time, bent, length - theta);
@@ -275,7 +273,7 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
         if self.of.loss.is_some() && self.of.rtol < 1e-10 {
             rest.meet_end();
         }
-        observer.segment(&rest);
+        see(Part::Segment(&rest));
     }
 
     fn linearised(&self, loss: bool) -> LinearContact {

@@ -185,7 +185,7 @@ struct Find {
 }
 
 impl Observer<4> for Find {
-    fn segment(&mut self, segment: &impl Segment<4>) {
+    fn segment(&mut self, segment: &dyn Segment<4>) {
         let [a, b] = segment.ends();
         if a.t <= self.t && self.t <= b.t {
             self.y = Some(segment.at_time(self.t).y);
@@ -194,7 +194,7 @@ impl Observer<4> for Find {
 }
 
 impl Observer<4> for Compare<'_> {
-    fn segment(&mut self, segment: &impl Segment<4>) {
+    fn segment(&mut self, segment: &dyn Segment<4>) {
         self.pieces += 1;
         let equations = self.system.regularised_contact(self.side);
         let regularised = equations.regularise(&self.touch.y);

@@ -20,7 +20,7 @@ impl<F: FnMut(&Knot<4>)> Watch<F> {
 }
 
 impl<F: FnMut(&Knot<4>)> Observer<4> for Watch<F> {
-    fn segment(&mut self, segment: &impl Segment<4>) {
+    fn segment(&mut self, segment: &dyn Segment<4>) {
         let [a, b] = segment.ends();
         (self.look)(a);
         (self.look)(&segment.at(0.3 * segment.length()));
