@@ -57,7 +57,7 @@ fn largest_energy<S: Follow<N>, const N: usize>(
         let mut free = ContactFree::new(system, window.to, settings.max_steps);
         return free.e1_max(window, e1, system.steady_energy());
     }
-    system.follow(plan, window, settings, &mut Unobserved, &mut e1)?;
+    system.follow_for(plan, window, settings, &mut Unobserved, &mut e1)?;
     Ok(e1.record())
 }
 

@@ -68,7 +68,11 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
     ///
     /// # Errors
     /// [`SolverError::TooManySteps`], [`SolverError::TooSlow`], [`SolverError::TooFast`], [`SolverError::NonFinite`].
-    pub fn propagate(&mut self, to: f64, observer: &mut dyn Observer<N>) -> Result<(), SolverError> {
+    pub fn propagate(
+        &mut self,
+        to: f64,
+        observer: &mut (impl Observer<N> + ?Sized),
+    ) -> Result<(), SolverError> {
         let budget = self.budget(to, observer.looks());
         if self.system.structure().history().is_none() {
             return self.go(to, observer, budget);
@@ -97,7 +101,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
     fn over_samples(
         &mut self,
         to: f64,
-        observer: &mut dyn Observer<N>,
+        observer: &mut (impl Observer<N> + ?Sized),
         budget: Budget,
     ) -> Result<(), SolverError> {
         let Some(pieces) = &self.samples else { return Ok(()) };
@@ -144,7 +148,12 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
         Budget::new(self.flow.pace(), self.max_steps, self.work.and(looks), [self.now.t, to])
     }
 
-    fn go(&mut self, to: f64, observer: &mut dyn Observer<N>, budget: Budget) -> Result<(), SolverError> {
+    fn go(
+        &mut self,
+        to: f64,
+        observer: &mut (impl Observer<N> + ?Sized),
+        budget: Budget,
+    ) -> Result<(), SolverError> {
         self.flow.check_step(self.now.t, to)?;
         let whole = self.flow.step();
         let mut clock = StepClock::new(self.now.t, whole);
@@ -190,7 +199,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
     fn go_reduced(
         &mut self,
         to: f64,
-        observer: &mut dyn Observer<N>,
+        observer: &mut (impl Observer<N> + ?Sized),
         budget: Budget,
     ) -> Result<(), SolverError> {
         let Some(Reduced { flow, .. }) = self.reduced.as_deref() else { return Ok(()) };

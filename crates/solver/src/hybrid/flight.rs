@@ -29,7 +29,7 @@ impl Hybrid<'_> {
         from: Knot<4>,
         phase: Phase,
         to: f64,
-        observer: &mut dyn Observer<4>,
+        observer: &mut (impl Observer<4> + ?Sized),
     ) -> Result<FlightEnd, SolverError> {
         let whole = self.flow.step();
         let mut clock = StepClock::new(from.t, whole);
@@ -116,7 +116,7 @@ impl Hybrid<'_> {
         &mut self,
         now: Knot<4>,
         to: f64,
-        observer: &mut dyn Observer<4>,
+        observer: &mut (impl Observer<4> + ?Sized),
     ) -> Result<FlightEnd, SolverError> {
         let Some(reduced) = self.reduced.take() else { return Ok(FlightEnd::Stopped(now)) };
         let end = self.reduced_steps(&reduced, now, to, observer);
@@ -129,7 +129,7 @@ impl Hybrid<'_> {
         reduced: &ReducedFlight,
         mut now: Knot<4>,
         to: f64,
-        observer: &mut dyn Observer<4>,
+        observer: &mut (impl Observer<4> + ?Sized),
     ) -> Result<FlightEnd, SolverError> {
         let (flow, whole) = (&reduced.flow.flow, reduced.flow.flow.step());
         let growth = LANES as f64 * whole * self.system.energy_norm_growth();

@@ -13,12 +13,22 @@ impl Hybrid<'_> {
     ///
     /// # Errors
     /// [`SolverError`] with the time reached.
-    #[inline(never)]
     pub fn propagate(
         &mut self,
         from: Motion,
         to: f64,
         observer: &mut dyn Observer<4>,
+    ) -> Result<Motion, SolverError> {
+        self.propagate_for(from, to, observer)
+    }
+
+    /// The same, compiled for this observer.
+    #[inline(never)]
+    pub(crate) fn propagate_for(
+        &mut self,
+        from: Motion,
+        to: f64,
+        observer: &mut (impl Observer<4> + ?Sized),
     ) -> Result<Motion, SolverError> {
         self.flow.check_step(from.t, to)?;
         self.budget =
@@ -52,7 +62,7 @@ impl Hybrid<'_> {
         &mut self,
         from: Motion,
         to: f64,
-        observer: &mut dyn Observer<4>,
+        observer: &mut (impl Observer<4> + ?Sized),
     ) -> Result<Motion, SolverError> {
         if let Some(rigid) = self.rigid.take() {
             let end = self.between_rigid(&rigid, from, to, observer);

@@ -35,7 +35,7 @@ impl Hybrid<'_> {
         walls: &RigidWalls,
         from: Motion,
         to: f64,
-        observer: &mut dyn Observer<4>,
+        observer: &mut (impl Observer<4> + ?Sized),
     ) -> Result<Motion, SolverError> {
         let mut phase = from.phase;
         let mut now = self.knot(from.t, from.y);
@@ -69,7 +69,7 @@ impl Hybrid<'_> {
         side: Side,
         touch: Knot<4>,
         begun: f64,
-        observer: &mut dyn Observer<4>,
+        observer: &mut (impl Observer<4> + ?Sized),
     ) -> (Knot<4>, Phase) {
         let [_, v1, _, v2] = touch.y;
         let closing = side.sign() * (v2 - v1);
@@ -106,7 +106,7 @@ impl Hybrid<'_> {
         side: Side,
         mut now: Knot<4>,
         to: f64,
-        observer: &mut dyn Observer<4>,
+        observer: &mut (impl Observer<4> + ?Sized),
     ) -> Result<HoldEnd, SolverError> {
         let (wall, [weight, constant]) = (self.system.wall(side), self.system.holding_force_weights(side));
         let mut clock = StepClock::new(now.t, held.step());

@@ -42,7 +42,7 @@ impl Hybrid<'_> {
         &mut self,
         from: Motion,
         to: f64,
-        observer: &mut dyn Observer<4>,
+        observer: &mut (impl Observer<4> + ?Sized),
     ) -> Result<Motion, SolverError> {
         let Some(pieces) = self.samples.take_if(|_| from.phase == Phase::Flight) else { return Ok(from) };
         let end = self.over_pieces(&pieces, from, to, observer);
@@ -56,7 +56,7 @@ impl Hybrid<'_> {
         pieces: &Pieces<4>,
         from: Motion,
         to: f64,
-        observer: &mut dyn Observer<4>,
+        observer: &mut (impl Observer<4> + ?Sized),
     ) -> Result<Motion, SolverError> {
         let Some(mut i) = pieces.at(from.t) else { return Ok(from) };
         let mut now = Knot { t: from.t, excitation: [0.0; 2], y: from.y, clock: [1.0, 0.0] };
@@ -104,7 +104,7 @@ impl Hybrid<'_> {
         i: usize,
         y: &[f64; 4],
         to: f64,
-        observer: &dyn Observer<4>,
+        observer: &(impl Observer<4> + ?Sized),
     ) -> Option<(f64, [f64; 4])> {
         let growth = PIECES as f64 * self.flow.step() * self.system.energy_norm_growth();
         let energy = self.system.energy_norm(y) + growth;

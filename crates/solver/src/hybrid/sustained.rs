@@ -17,7 +17,7 @@ impl Hybrid<'_> {
         from: &Knot<4>,
         regularised: RegularisedState,
         to: f64,
-        observer: &mut dyn Observer<4>,
+        observer: &mut (impl Observer<4> + ?Sized),
     ) -> Result<End, SolverError> {
         let follows = self.reduced.is_some() && !observer.follows_contacts();
         let limits = (self.system, self.rtol, self.budget, follows);
@@ -31,7 +31,7 @@ impl Hybrid<'_> {
         mut equations: RegularisedContact,
         touch: Knot<4>,
         to: f64,
-        observer: &mut dyn Observer<4>,
+        observer: &mut (impl Observer<4> + ?Sized),
     ) -> Result<(Knot<4>, RegularisedState), SolverError> {
         let mut regularised = equations.regularise(&touch.y);
         regularised[0] = 0.0;

@@ -64,6 +64,7 @@ pub trait Observer<const N: usize> {
     /// A segment of the motion has been computed.
     fn segment(&mut self, _segment: &dyn Segment<N>) {}
     /// Several segments at once. To take them one by one is always right.
+    #[inline(always)]
     fn path(&mut self, path: &dyn Path<N>) {
         if self.watches_motion() {
             for piece in 0..path.pieces() {
@@ -79,6 +80,7 @@ pub trait Observer<const N: usize> {
         }
     }
     /// Several whole steps of an exact flow at once. To take them one by one is always right.
+    #[inline(always)]
     fn steps(&mut self, steps: &Steps<'_, N>) {
         if self.watches_motion() {
             for number in 0..steps.count() {
@@ -87,6 +89,7 @@ pub trait Observer<const N: usize> {
         }
     }
     /// Whether it provably needs nothing of these pieces of a record: then they are not handed over.
+    #[inline(always)]
     fn skips(&self, _block: &Block<N>) -> bool {
         !self.watches_motion()
     }
@@ -125,10 +128,12 @@ impl<const N: usize, A: Observer<N>, B: Observer<N>> Observer<N> for (A, B) {
     fn watches_motion(&self) -> bool {
         self.0.watches_motion() || self.1.watches_motion()
     }
+    #[inline(always)]
     fn segment(&mut self, segment: &dyn Segment<N>) {
         self.0.segment(segment);
         self.1.segment(segment);
     }
+    #[inline(always)]
     fn path(&mut self, path: &dyn Path<N>) {
         self.0.path(path);
         self.1.path(path);
@@ -167,9 +172,11 @@ impl<const N: usize, O: Observer<N> + ?Sized> Observer<N> for &mut O {
     fn watches_motion(&self) -> bool {
         (**self).watches_motion()
     }
+    #[inline(always)]
     fn segment(&mut self, segment: &dyn Segment<N>) {
         (**self).segment(segment);
     }
+    #[inline(always)]
     fn path(&mut self, path: &dyn Path<N>) {
         (**self).path(path);
     }

@@ -207,9 +207,12 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
         N + 1
     }
 
+    #[inline(always)]
     fn states(&self, visit: &mut dyn FnMut(f64, &[f64; 4])) {
         visit(0.0, &self.touch.y);
-        let [x1, v1, x2, v2] = [0, 1, 2, 3].map(|i| self.component(i));
+        // Written out, so that the compiler drops the components that a visitor does not use.
+        let [x1, v1] = [self.component(0), self.component(1)];
+        let [x2, v2] = [self.component(2), self.component(3)];
         for i in 0..N {
             let state = [node(&x1, i), node(&v1, i), node(&x2, i), node(&v2, i)];
             visit(self.duration * node(&self.rule.times, i), &state);

@@ -60,7 +60,7 @@ impl Collisions {
         touch: Knot<4>,
         to: f64,
         bends: &Bends,
-        observer: &mut dyn Observer<4>,
+        observer: &mut (impl Observer<4> + ?Sized),
     ) -> Option<(Knot<4>, u64)> {
         if self.equations.is_lossy() {
             let loss = self.loss.as_ref().filter(|_| !observer.follows_contacts())?;
@@ -117,7 +117,7 @@ impl Collisions {
         touch: Knot<4>,
         to: f64,
         bends: &Bends,
-        observer: &mut dyn Observer<4>,
+        observer: &mut (impl Observer<4> + ?Sized),
     ) -> Option<(Knot<4>, u64)> {
         let speed = self.side.sign() * (touch.y[3] - touch.y[1]);
         if speed.is_nan() || speed <= 0.0 {
@@ -146,7 +146,7 @@ impl Collisions {
         touch: &Knot<4>,
         to: f64,
         bends: &Bends,
-        observer: &mut dyn Observer<4>,
+        observer: &mut (impl Observer<4> + ?Sized),
     ) -> Option<(Knot<4>, u64)> {
         let iterate = |pushed: &mut Pushed<'_, M>| self.iterate_lossy(of, law, touch, to, pushed);
         self.solve(&of.rule, iterate, flow, touch, bends, observer)
@@ -161,7 +161,7 @@ impl Collisions {
         flow: &Flow<4>,
         touch: &Knot<4>,
         bends: &Bends,
-        observer: &mut dyn Observer<4>,
+        observer: &mut (impl Observer<4> + ?Sized),
     ) -> Option<(Knot<4>, u64)> {
         let mut pushed = Pushed {
             free: flow.expand(touch.excitation, &touch.y),

@@ -35,7 +35,7 @@ pub fn integrate(
     to: f64,
     (system, rtol, budget, follows): (&Coupled, f64, Budget, bool),
     (work, shared): (&mut Work, &Shared),
-    observer: &mut dyn Observer<4>,
+    observer: &mut (impl Observer<4> + ?Sized),
 ) -> Result<End, SolverError> {
     equations.set_excitation(y[TIME], from.excitation);
     equations.set_force(equations.push(y[W]) >= 0.0);
