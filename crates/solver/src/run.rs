@@ -69,8 +69,8 @@ pub trait Follow<const N: usize>: Planned<N> {
         self.follow_for(plan, window, settings, before, observer)
     }
 
-    /// The same, compiled for these observers: for the runs that most of a search consists of, which it makes faster by some per cent. For every
-    /// observer it would take half as long again to build Retune, and most of that for tests.
+    /// The same, compiled for these observers, and some per cent faster: for the runs that a search consists of. Compiled for every observer, loops
+    /// over time would make a build half as long again.
     ///
     /// # Errors
     /// As [`Self::follow`].
