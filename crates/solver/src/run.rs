@@ -94,9 +94,7 @@ impl Follow<2> for Bare {
         observer: &mut (impl Observer<2> + ?Sized),
     ) -> Followed<2> {
         match plan {
-            Plan::General(method) => {
-                follow_by(method, self, window, settings, &mut &mut *before, &mut &mut *observer)
-            }
+            Plan::General(method) => follow_by(method, self, window, settings, before, observer),
             _ => follow_free(self, window, settings, before, observer),
         }
     }
@@ -113,9 +111,7 @@ impl Follow<4> for Coupled {
     ) -> Followed<4> {
         match plan {
             Plan::General(_) if self.is_rigid() => Err(SolverError::RigidWalls { t: 0.0 }),
-            Plan::General(method) => {
-                follow_by(method, self, window, settings, &mut &mut *before, &mut &mut *observer)
-            }
+            Plan::General(method) => follow_by(method, self, window, settings, before, observer),
             Plan::Closed | Plan::Free => follow_free(self, window, settings, before, observer),
             Plan::UntilItRepeats(late) => {
                 follow_until_it_repeats(self, window, late, settings, before, observer)
@@ -148,21 +144,21 @@ fn follow_free<S: LinearSystem<N>, const N: usize>(
     Ok((free.state(), free.work))
 }
 
-/// Follows any system by a general method.
+/// Follows any system by a general method, whose loop calls observers through a table.
 fn follow_by<S: LinearSystem<N>, const N: usize>(
     method: General,
     system: &S,
     window: Window,
     settings: &Settings,
-    before: &mut dyn Observer<N>,
-    observer: &mut dyn Observer<N>,
+    mut before: &mut (impl Observer<N> + ?Sized),
+    mut observer: &mut (impl Observer<N> + ?Sized),
 ) -> Followed<N>
 where
     Const<N>: DimMin<Const<N>, Output = Const<N>>,
 {
     let run = Run::new(system, settings, 0.0, system.start(), settings.longest_step(window.to));
-    let run = follow_stretches(method, system, run, window.from, before)?;
-    let run = follow_stretches(method, system, run, window.to, observer)?;
+    let run = follow_stretches(method, system, run, window.from, &mut before)?;
+    let run = follow_stretches(method, system, run, window.to, &mut observer)?;
     Ok((run.state(), run.work))
 }
 
