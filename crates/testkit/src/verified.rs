@@ -46,7 +46,8 @@ pub fn desk() -> Desk {
     study["optimize"]["surf"] = json!(null);
     study["optimize"]["vary"] = json!(["k2", "c2"]);
     study["optimize"]["refine"] = json!({ "MaxFunEvals": 8 });
-    study["optimize"]["objective"] = json!({ "omega": { "from": 7.5, "to": 7.8, "samples": 2 } });
+    study["optimize"]["objective"] =
+        json!({ "omega": { "from": 7.5, "to": 7.8, "samples": 2 }, "starts": 1 });
     let desk = Desk::with(&study);
     let damper = json!({ "damper": "NES, \"single-sided\"", "study": "study.json" });
     let mut row = damper.clone();

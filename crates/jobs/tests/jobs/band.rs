@@ -4,7 +4,7 @@ use crate::{request, search};
 use retune_jobs::tune::tune;
 use retune_jobs::{Error, Request, Silent};
 use retune_optim::Unusable;
-use retune_testkit::desk::{Desk, committed, flat, number, tiny};
+use retune_testkit::desk::{Desk, committed, few_starts, flat, number, tiny};
 use retune_testkit::observers::{good, refused};
 use serde_json::{Value, json};
 
@@ -49,10 +49,11 @@ fn reference_the_study_of_the_tmd_over_the_band_finds_the_closed_form_optimum() 
     assert!(desk.read("out/band.svg").contains("tuned for the band: 160.605 J"));
 }
 
-/// A short band of the impacting damper, evaluated by runs.
+/// A short band of the impacting damper, evaluated by runs: below the resonance, where motions are regular and certificates quick.
 pub fn ssvi_band() -> Value {
     let mut study = tiny();
-    study["optimize"]["objective"] = json!({ "omega": { "from": 6.0, "to": 6.6, "samples": 5 } });
+    study["optimize"]["objective"] = json!({ "omega": { "from": 4.0, "to": 4.6, "samples": 5 } });
+    few_starts(&mut study);
     study
 }
 
@@ -71,11 +72,11 @@ fn contract_a_band_of_runs_has_the_same_bytes_with_one_thread_and_two() {
     let [found, run] = ["/E1max", "/simulation/E1max"].map(|path| number(&optimum, path));
     assert!((found / run - 1.0).abs() < 1e-12, "{found} {run}");
     let rows = band(&desk, "1");
-    let expected = [6.0, 6.15, 6.3, 6.45, 6.6];
+    let expected = [4.0, 4.15, 4.3, 4.45, 4.6];
     let samples = rows.iter().step_by(4);
     assert!(rows.len() == 17 && samples.zip(expected).all(|(row, omega)| (row[0] - omega).abs() < 1e-12));
     assert!(rows.iter().step_by(4).all(|row| row[3] <= found));
-    assert!(desk.read("1/fminsearch.txt").contains("worst over omega = 6 to 6.6 rad/s, t0 = 1 s, T = 4 s; "));
+    assert!(desk.read("1/fminsearch.txt").contains("worst over omega = 4 to 4.6 rad/s, t0 = 1 s, T = 4 s; "));
 }
 
 #[test]

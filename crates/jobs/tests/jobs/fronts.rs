@@ -5,7 +5,7 @@ use retune_jobs::describe;
 use retune_jobs::fronts::fronts;
 use retune_jobs::{Error, Request, Silent};
 use retune_study::{Rule, StudyError};
-use retune_testkit::desk::{Desk, committed, count_lines};
+use retune_testkit::desk::{Desk, committed, count_lines, few_starts};
 use retune_testkit::observers::{cut_off_before, good, refused};
 use serde_json::json;
 
@@ -22,7 +22,8 @@ fn desk() -> Desk {
         "contact_force": [20000],
         "samples": 5,
         "check": 9,
-        "certificates": 1
+        "certificates": 1,
+        "rounds": 1
     });
     desk.write_json("fronts.json", &fronts);
     for (name, base) in [("tmd.json", "fronts-tmd.json"), ("ssvi.json", "fronts-ssvi.json")] {
@@ -31,8 +32,9 @@ fn desk() -> Desk {
         // Beside the resonance, where motions are regular and certificates quick.
         let band = &mut study["optimize"]["objective"]["omega"];
         (band["from"], band["to"], band["samples"]) = (json!(7.2), json!(7.8), json!(3));
-        study["optimize"]["global"] = json!({ "samples": 16, "searches": 1, "evaluations": 20 });
-        study["optimize"]["refine"] = json!({ "scaled": true, "MaxFunEvals": 20 });
+        study["optimize"]["global"] = json!({ "samples": 8, "searches": 1, "evaluations": 10 });
+        study["optimize"]["refine"] = json!({ "scaled": true, "MaxFunEvals": 10 });
+        few_starts(&mut study);
         desk.write_json(name, &study);
     }
     desk

@@ -3,7 +3,7 @@
 use crate::band::ssvi_band;
 use crate::search;
 use retune_model::Parameter;
-use retune_testkit::desk::{Desk, committed, global, number, tiny};
+use retune_testkit::desk::{Desk, committed, few_starts, global, number, tiny};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -98,7 +98,7 @@ fn four(value: f64) -> String {
 fn searches() -> (Desk, Vec<&'static str>) {
     let desk = Desk::new();
     let mut settled = tiny();
-    settled["optimize"]["objective"] = json!({ "response": "settled" });
+    settled["optimize"]["objective"] = json!({ "response": "settled", "starts": 1 });
     let mut touching = committed("tmd-free.json");
     touching["scene"]["damper"]["D"] = json!(0.25);
     touching["optimize"]["surf"]["k2"]["points"] = json!(9);
@@ -109,6 +109,7 @@ fn searches() -> (Desk, Vec<&'static str>) {
     let mut paper = committed("ssvi.json");
     paper["optimize"] =
         json!({ "vary": ["c2"], "bounds": { "c2": [231.9, 232.1] }, "refine": { "MaxFunEvals": 3 } });
+    few_starts(&mut paper);
     let limited = |stroke: f64| global(json!({}), json!({ "stroke": stroke }));
     let studies: [(&str, Value); 9] = [
         ("tiny", tiny()),

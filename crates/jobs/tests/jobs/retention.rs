@@ -6,7 +6,7 @@ use retune_jobs::{Done, Error, Silent};
 use retune_model::Parameter;
 use retune_store::Error as StoreError;
 use retune_study::Setting;
-use retune_testkit::desk::{Desk, committed, global};
+use retune_testkit::desk::{Desk, committed, few_starts, global};
 use retune_testkit::observers::{Record, cut_off, good, refused};
 use serde_json::json;
 
@@ -112,6 +112,7 @@ fn contract_bounds_on_k2_follow_k1_unless_they_are_fixed() {
     let mut study = committed("retune-tmd-free.json");
     study["optimize"]["bounds"]["k2"] = json!([10, 1000]);
     study["optimize"]["global"] = json!({ "samples": 8, "searches": 1, "evaluations": 20 });
+    few_starts(&mut study);
     desk.write_json("one.json", &study);
     let bounds = |out: &str| {
         good(retention(&request(&desk, "retune.json", out), &stiffnesses(&[7.9e4]), &Silent));

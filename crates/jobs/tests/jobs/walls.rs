@@ -6,7 +6,7 @@ use retune_jobs::certify::certify;
 use retune_jobs::verify::verify;
 use retune_model::Parameter;
 use retune_study::Setting;
-use retune_testkit::desk::{Desk, committed, flat, global, number};
+use retune_testkit::desk::{Desk, committed, few_starts, flat, global, number};
 use retune_testkit::observers::good;
 use serde_json::{Value, json};
 
@@ -87,6 +87,7 @@ fn contract_other_walls_replace_the_loss_of_the_study() {
     let mut study = tuned();
     study["scene"]["damper"]["contact"]["loss"] = json!({ "lambda": 0.3 });
     study["optimize"]["objective"]["omega"]["samples"] = json!(7);
+    few_starts(&mut study);
     let (_, lossy) = certified(&study);
     study["scene"]["damper"]["contact"]["loss"] = Value::Null;
     let (_, lossless) = certified(&study);

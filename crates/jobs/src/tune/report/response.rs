@@ -15,6 +15,7 @@ use retune_report::html::{figure, link};
 use retune_report::{
     Axis, Chart, Dash, Drawing, Key, Layer, Mark, Scale, Shape, Sheet, Stroke, Width, drawing,
 };
+use retune_solver::{Ask, extremes};
 
 /// The curves and their looks.
 fn lines(findings: &Findings) -> [(&'static str, Stroke); 3] {
@@ -207,9 +208,10 @@ fn about(findings: &Findings) -> (Vec<f64>, [Vec<f64>; 3]) {
 /// The amplitude of the structure at each frequency, mm.
 fn displacements(findings: &Findings, omega: &[f64]) -> [Vec<f64>; 3] {
     let (window, settings) = (findings.study.window.window(), findings.study.solver.settings());
+    let ask = Ask { measure: Measure::Displacement, ..Ask::default() };
     let value = |scene: Scene, omega: f64| {
-        let run = at(omega, scene).and_then(|scene| retune_solver::simulate(&scene, window, &settings).ok());
-        run.map_or(f64::NAN, |run| 1e3 * run.structure.displacement.value)
+        let run = at(omega, scene).and_then(|scene| extremes(&scene, window, &settings, ask).ok());
+        run.map_or(f64::NAN, |run| 1e3 * run.largest.value)
     };
     findings.scenes().map(|scene| omega.par_iter().map(|omega| value(scene, *omega)).collect())
 }
