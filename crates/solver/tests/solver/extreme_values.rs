@@ -96,10 +96,10 @@ const HYBRID: Settings = Settings {
     max_steps: 100_000,
 };
 
-fn sweep(method: Method, to: f64, max_steps: u64) {
+fn sweep(method: Method, to: f64, max_steps: u64, every: usize) {
     let settings = Settings { method, max_steps, ..HYBRID };
     let check = |(scene, base): (&str, Numbers), name: &str| {
-        for value in EXTREMES {
+        for value in EXTREMES.into_iter().step_by(every) {
             let what = format!("{} {scene} {name}={value:e}", method.name());
             let (numbers, window) = with(base, to, name, value);
             match simulate(&numbers.scene(), window, &settings) {
@@ -122,13 +122,13 @@ fn sweep(method: Method, to: f64, max_steps: u64) {
 
 #[test]
 fn contract_extreme_values_end_with_a_value_or_with_advice_that_applies() {
-    sweep(Method::Hybrid, 100.0, HYBRID.max_steps);
+    sweep(Method::Hybrid, 100.0, HYBRID.max_steps, 1);
 }
 
 #[test]
 fn contract_extreme_values_by_other_methods() {
     for method in [Method::Ode45, Method::Ode23s, Method::Ode23, Method::Dop853, Method::Rk4, Method::Euler] {
-        sweep(method, 2.0, 2_500);
+        sweep(method, 2.0, 2_500, 2);
     }
 }
 

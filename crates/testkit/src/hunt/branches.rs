@@ -24,12 +24,12 @@ pub const DAMPERS: [Numbers; 4] = [
     },
 ];
 
-/// Runs from rest at `count` frequencies of four dampers are followed in the search. What settles there on no known branch is a fault; and of as
+/// Runs from rest at `count` frequencies of some dampers are followed in the search. What settles there on no known branch is a fault; and of as
 /// many runs between them hardly one may.
-pub fn from_rest(count: usize) -> Hunt {
+pub fn from_rest(dampers: &[Numbers], count: usize) -> Hunt {
     let mut hunt = Hunt::default();
     let (mut lost, mut between) = (Vec::new(), Vec::new());
-    for numbers in DAMPERS {
+    for numbers in dampers {
         let settings = Settings::default();
         let over = Plan::over(Parameter::Omega, [5.0, 8.0]);
         let plan = Plan { samples: 31, starts: 8, fine: count, passes: 2, ..over };
@@ -99,11 +99,11 @@ pub fn from_rest(count: usize) -> Hunt {
 }
 
 /// Branches of several periods come close to those of one where walls are nearly hard and a motion grazes. None goes over to a motion of a shorter
-/// period, followed several times over.
-pub fn periods(stiffnesses: &[f64]) -> Hunt {
+/// period, followed several times over. The band is given in shares of the natural frequency.
+pub fn periods(stiffnesses: &[f64], band: [f64; 2]) -> Hunt {
     let mut hunt = Hunt::default();
     for &k1 in stiffnesses {
-        let range = [0.8, 1.25].map(|share| share * f64::sqrt(k1 / 1000.0));
+        let range = band.map(|share| share * f64::sqrt(k1 / 1000.0));
         let plan = Plan { samples: 31, starts: 16, passes: 2, ..Plan::over(Parameter::Omega, range) };
         let scene = Numbers { k1, ..SSVI }.scene();
         let found = branches(&scene, plan, &Settings::default(), Control::default()).expect("branches");
