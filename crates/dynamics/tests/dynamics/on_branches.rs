@@ -6,6 +6,7 @@ use retune_dynamics::periodic::{End, branches};
 use retune_solver::Settings;
 use retune_testkit::hunt::branches::{DAMPERS, from_rest, periods};
 
+/// Without the paper's damper, which takes longest: `just lab hunt-branches` has it.
 #[test]
 fn invariant_what_settles_lies_on_a_branch() {
     from_rest(&DAMPERS[1..], 31).passes();
@@ -23,6 +24,7 @@ fn invariant_deflation_finds_an_isola_that_no_run_from_rest_leads_to() {
     assert_eq!([0, 4].map(isola), [0, 1]);
 }
 
+/// In this part of the band one goes over to a shorter period where nothing is done about it.
 #[test]
 fn invariant_branches_keep_their_period() {
     periods(&[4.5e4], [1.05, 1.25]).passes();

@@ -260,7 +260,7 @@ fn reference_gradients_of_largest_values_agree_with_differences() {
         let numbers = random(&mut spread, scene % 2 == 1).0;
         scenes.push((Numbers { p, omega: spread.logarithmic(3.0, 15.0), ..numbers }, amplitude));
     }
-    // Of all kinds alike; the whole takes a minute.
+    // A fifth, of all kinds alike.
     let scenes: Vec<Driven> = scenes.into_iter().step_by(5).collect();
     let largest = |(numbers, amplitude): &Driven, measure: Measure| {
         let ask = Ask { measure, also: Some(Also::walls(5.0)), ..Ask::default() };
