@@ -4,5 +4,6 @@ mod branches;
 mod hostile;
 mod server;
 mod session;
+mod shown;
 mod thin;
 mod written;
