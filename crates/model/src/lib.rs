@@ -93,6 +93,7 @@ pub use parameter::place::{Absent, Unsettable};
 pub use per_variable::PerVariable;
 pub use record::{BadSamples, Column, Record, RecordFile, SampledForce, Samples, Spacing};
 pub use regularised::bounds::{Change, Forces, Growth, ORDERS, OverContact};
+pub use regularised::series::{ContactSeries, SeriesMoment};
 pub use regularised::{RegularisedContact, RegularisedState};
 pub use rms::Rms;
 pub use scene::{Primary, Scene, den_hartog, nishihara_asami, warburton};

@@ -16,6 +16,7 @@
 
 pub(crate) mod bounds;
 pub(crate) mod overdamped;
+pub(crate) mod series;
 
 use crate::loss::{Law, Restoring};
 use crate::polynomial::{TERMS as WAVE, polynomial};
@@ -226,11 +227,16 @@ impl RegularisedContact {
     /// The same from the contact's force over its stiffness.
     #[inline(always)]
     fn accelerations_by(&self, cube: f64, &[q, w, x1, v1, t]: &RegularisedState) -> [f64; 2] {
-        let stretch = q * q + self.stretch;
+        self.balance(cube, [q * q + self.stretch, w, x1, v1], self.wave(&self.cos, t - self.since))
+    }
+
+    /// The same from the spring's stretch and the force, P cos ωt; linear in all of them.
+    #[inline(always)]
+    fn balance(&self, cube: f64, [stretch, w, x1, v1]: [f64; 4], force: f64) -> [f64; 2] {
         // The force's polynomial comes last and alone: it is the longest chain of dependent operations.
         let resisting = self.primary[1] * v1 + self.primary[2] * x1;
         let push = |i: usize| self.hertz[i] * cube + self.dashpot[i] * w + self.spring[i] * stretch;
-        let excitation = self.primary[0] * self.wave(&self.cos, t - self.since);
+        let excitation = self.primary[0] * force;
         [
             (self.sign * resisting - push(1)) - self.felt * excitation,
             (self.sign * push(0) - resisting) + excitation,
@@ -277,6 +283,11 @@ impl RegularisedContact {
         self.accelerations(y)[0]
     }
 
+    /// The acceleration into the wall by all forces but Hertz's, m/s².
+    pub fn pull(&self, y: &RegularisedState) -> f64 {
+        self.accelerations_by(0.0, y)[0]
+    }
+
     /// `κ = K (1/m1 + 1/m2)`: the contact force accelerates the bodies apart by `κ z^(3/2)`; m^-0.5 s^-2.
     pub fn hertz_rate(&self) -> f64 {
         self.hertz[1]
@@ -285,6 +296,11 @@ impl RegularisedContact {
     /// The touch-down speed (m/s) of an undisturbed collision that reaches `q` (√m): `w = √(4 κ q⁵ / 5)`.
     pub fn speed_at_depth(&self, q: f64) -> f64 {
         (0.8 * self.hertz[1] * q.powi(5)).sqrt()
+    }
+
+    /// The rate at which spring and wall turn the damper at `q`, rad/s.
+    pub fn turning(&self, q: f64) -> f64 {
+        (self.spring[1] + 1.5 * self.hertz[1] * q).sqrt()
     }
 
     /// `(1/m1 + 1/m2) m1`: the relative acceleration of the two bodies under a contact force, over that of the PS.

@@ -11,5 +11,6 @@ mod mode;
 mod overdamped;
 mod regularised;
 mod sensitivity;
+mod series;
 mod stationary;
 mod steady;

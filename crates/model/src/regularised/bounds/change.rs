@@ -208,9 +208,14 @@ impl RegularisedContact {
             forces: Some(Forces {
                 contact: with(&|end| end.contact, contact),
                 turn: if turned == 0.0 { 0.0 } else { turned / self.amplitude },
-                kick: [0.0, self.hertz[0], 0.0, self.hertz[0] - self.hertz[1]].map(|a| self.sign * a),
+                kick: self.kick(),
             }),
         }
+    }
+
+    /// The rate of `[x1, v1, x2, v2]` over the contact's force over its stiffness.
+    pub(in crate::regularised) fn kick(&self) -> [f64; 4] {
+        [0.0, self.hertz[0], 0.0, self.hertz[0] - self.hertz[1]].map(|a| self.sign * a)
     }
 
     /// A bound on the rate of the force, N/s.
