@@ -91,6 +91,14 @@ impl Budget {
         if steps > self.limit || is_long { self.judge(work, t) } else { Ok(()) }
     }
 
+    /// The error of a run that cannot go on from `t` (s), however many steps it may take.
+    #[cold]
+    pub fn no_progress(&self, work: &Work, t: f64) -> SolverError {
+        let Self { pace, limit, span: [_, to], .. } = *self;
+        let (steps, needed) = (work.steps, f64::INFINITY);
+        SolverError::TooSlow { t, steps, needed, limit, remedy: pace.remedy(to, 0.0) }
+    }
+
     #[cold]
     fn judge(&self, work: &Work, t: f64) -> Result<(), SolverError> {
         let Self { pace, limit, begun, span: [from, to] } = *self;

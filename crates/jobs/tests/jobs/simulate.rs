@@ -98,7 +98,7 @@ fn contract_values_that_nobody_means_are_told_with_what_helps() {
             "R",
             1e-200,
             &|error| matches!(error, SolverError::Contact { .. }),
-            "a contact at t = 2.1",
+            "a contact at t = 2.0",
             "check what it is made of: R, q, E1 to E4",
         ),
         (

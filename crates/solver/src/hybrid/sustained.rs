@@ -2,6 +2,7 @@
 
 use super::propagator::{Hybrid, relative_position};
 use crate::contact::regularised::integrate::{End, integrate};
+use crate::contact::regularised::series::follow;
 use crate::error::SolverError;
 use crate::linear::steps::Step;
 use crate::motion::knot::Knot;
@@ -13,14 +14,19 @@ impl Hybrid<'_> {
     /// Follows a contact step by step from a state in it, until lift-off or `to`.
     pub(super) fn contact(
         &mut self,
-        equations: RegularisedContact,
+        mut equations: RegularisedContact,
         from: &Knot<4>,
         regularised: RegularisedState,
         to: f64,
         observer: &mut (impl Observer<4> + ?Sized),
     ) -> Result<End, SolverError> {
-        let follows = self.reduced.is_some() && !observer.follows_contacts();
-        let limits = (self.system, self.rtol, self.budget, follows);
+        let (followed, stiff) = (observer.follows_contacts(), self.reduced.is_some());
+        if !equations.is_lossy() && !followed && !stiff {
+            equations.set_excitation(regularised[4], from.excitation);
+            let limits = (self.system, self.rtol, self.budget);
+            return follow(&equations, (*from, regularised), to, limits, &mut self.work, observer);
+        }
+        let limits = (self.system, self.rtol, self.budget, stiff && !followed);
         integrate(equations, from, regularised, to, limits, (&mut self.work, &self.shared), observer)
     }
 

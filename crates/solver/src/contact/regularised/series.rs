@@ -1,0 +1,301 @@
+//! Contacts without loss, in steps of Taylor series: a step goes as far as the damper turns on its wall, and all that observers ask of its interior
+//! is a polynomial.
+
+use super::integrate::End;
+use super::piece::{Q, TIME, W, at_elapsed};
+use crate::budget::Budget;
+use crate::error::SolverError;
+use crate::motion::form::{Form, QUINTIC};
+use crate::motion::knot::Knot;
+use crate::motion::segment::Segment;
+use crate::observe::observer::Observer;
+use crate::response::Work;
+use retune_model::{
+    ContactSeries, Coupled, Growth, ORDERS, RegularisedContact, RegularisedState, SeriesMoment,
+};
+use std::cell::OnceCell;
+use wide::f64x4;
+
+/// The angle (rad) by which spring and wall turn the damper in a step at most: observers expect of a segment that a speed changes its sign once, and
+/// that a rule of 8 nodes is exact on it.
+const TURN: f64 = 1.5;
+
+/// The share of the error allowed in a step that its last two terms may make up. The first term left out is smaller.
+const LAST: f64 = 0.1;
+
+/// The largest error of a step: searches take slopes from the equations, which a polynomial must obey as closely as its maxima are to be known.
+const LARGEST: f64 = 1e-6;
+
+/// Follows a contact without loss from `from`, regularised `y`, until lift-off or time `to`; `rtol` as in [`integrate`](super::integrate::integrate).
+///
+/// # Errors
+/// [`SolverError`] with the time reached.
+pub fn follow(
+    equations: &RegularisedContact,
+    (mut start, mut y): (Knot<4>, RegularisedState),
+    to: f64,
+    (system, rtol, budget): (&Coupled, f64, Budget),
+    work: &mut Work,
+    observer: &mut (impl Observer<4> + ?Sized),
+) -> Result<End, SolverError> {
+    let (touch_down, rtol) = (start.t - y[TIME], rtol.min(LARGEST));
+    let mut speed = 0.0_f64;
+    let mut series = ContactSeries::for_turn(TURN, rtol);
+    loop {
+        // The sizes of the collision that is as fast as recent motion, or comes as deep.
+        let deep = equations.speed_at_depth(y[Q]);
+        speed = (0.5 * speed).max(y[W].abs()).max(deep);
+        let depth = if speed == deep { y[Q] } else { equations.greatest_depth(speed) };
+        if !depth.is_finite() {
+            return Err(budget.no_progress(work, start.t)); // squares of its speed overflow
+        }
+        // Other forces may press it deeper: about that depth its terms are of ordinary size.
+        let pressed = (2.5 * equations.pull(&y).max(0.0) / equations.hertz_rate()).cbrt().max(depth);
+        series.expand(equations, &y, start.excitation, 1.0 / (pressed * equations.turning(pressed)));
+        let Step { length, end, state, event } =
+            step(equations, &series, &y, (touch_down, to), (rtol, speed, depth), work)?;
+        budget.check(&work.and(observer.looks()), end.t)?;
+        let energy =
+            (2.0 * system.total_energy(&start.y)).sqrt() + (end.t - start.t) * system.energy_norm_growth();
+        let piece = Piece {
+            equations,
+            series: &series,
+            touch_down,
+            length,
+            ends: [start, end],
+            energy,
+            slopes: OnceCell::new(),
+            growth: OnceCell::new(),
+        };
+        if length > 0.0 {
+            observer.segment(&piece);
+        }
+        match event {
+            Some(Event::End) => return Ok(End::InContact(end)),
+            _ if observer.satisfied() => return Ok(End::InContact(end)),
+            Some(Event::LiftOff) => return Ok(End::LiftOff(end)),
+            None => (start, y) = (end, state),
+        }
+    }
+}
+
+/// What ends a contact.
+enum Event {
+    LiftOff,
+    /// The run ends.
+    End,
+}
+
+/// A step of a contact.
+struct Step {
+    length: f64,
+    end: Knot<4>,
+    state: RegularisedState,
+    event: Option<Event>,
+}
+
+/// The step from `y` along its series.
+fn step(
+    equations: &RegularisedContact,
+    series: &ContactSeries,
+    y: &RegularisedState,
+    (touch_down, to): (f64, f64),
+    (rtol, speed, q): (f64, f64, f64),
+    work: &mut Work,
+) -> Result<Step, SolverError> {
+    work.steps += 1;
+    work.evaluations += series.terms() as u64;
+    let turning = equations.turning(q);
+    // A speed is known to what rounding leaves of its rate in a turn.
+    let lost = f64::EPSILON * equations.size_of_terms(y) * equations.mass_ratio() / turning;
+    let allowed = (rtol * speed).max(lost);
+    let share = LAST * allowed / speed;
+    let sizes = [q, speed, speed / equations.mass_ratio()].map(|size| share * size);
+    let mut length = series.reach(sizes, TURN / (q * turning));
+    let mut moment = series.at(length);
+    // The polynomials obey the equations at the end, too.
+    while equations.defect(series, length, &moment) * length * q > allowed {
+        work.rejected += 1;
+        length *= 0.5;
+        moment = series.at(length);
+    }
+    if !moment.state.iter().all(|v| v.is_finite()) || length < 1e-12 * q / speed {
+        let t = touch_down + y[TIME];
+        let finite = y.iter().all(|v| v.is_finite());
+        return Err(if finite { SolverError::Contact { t } } else { SolverError::NonFinite { t } });
+    }
+    let mut event = None;
+    if let Some(leaves) = first_root(&series.root(), length / series.unit()) {
+        let leaves = leaves * series.unit();
+        (length, moment, event) = (leaves, series.at(leaves), Some(Event::LiftOff));
+        moment.state[Q] = 0.0;
+    }
+    let ends = touch_down + moment.state[TIME] >= to;
+    if ends {
+        (length, _) = at_elapsed(|theta| series.at(theta).state, length, to - touch_down);
+        (moment, event) = (series.at(length), Some(Event::End));
+    }
+    let mut end = knot(equations, touch_down, &moment);
+    if ends {
+        end.t = to;
+    }
+    Ok(Step { length, end, state: moment.state, event })
+}
+
+/// The moment of a regularised state under this excitation.
+fn knot(
+    equations: &RegularisedContact,
+    touch_down: f64,
+    SeriesMoment { state: y, excitation }: &SeriesMoment,
+) -> Knot<4> {
+    let clock = [y[Q], 0.5 * y[W]];
+    Knot { t: touch_down + y[TIME], excitation: *excitation, y: equations.physical(y), clock }
+}
+
+/// The first root of a polynomial in (0, length], which is positive before; of one without a constant term, the first after 0.
+///
+/// Between two places `h` apart it is above the lower of its values there less `h²/8` times the bound on its curvature.
+fn first_root(terms: &[f64], length: f64) -> Option<f64> {
+    let terms = if terms[0] == 0.0 { &terms[1..] } else { terms };
+    let others = terms[1..].iter().rev().fold(0.0, |sum, term| (sum + term.abs()) * length);
+    if terms[0] > others {
+        return None;
+    }
+    // Value, slope and curvature.
+    let at = |theta: f64| {
+        let [mut value, mut slope] = [0.0; 2];
+        for term in terms.iter().rev() {
+            slope = slope * theta + value;
+            value = value * theta + term;
+        }
+        [value, slope]
+    };
+    let bend =
+        (2..terms.len()).rev().fold(0.0, |sum, k| sum * length + (k * (k - 1)) as f64 * terms[k].abs());
+    let mut stretches = vec![[(0.0, terms[0]), (length, at(length)[0])]];
+    while let Some([(from, first), (to, last)]) = stretches.pop() {
+        let h = to - from;
+        if first.min(last) > 0.125 * bend * h * h {
+            continue;
+        }
+        let [_, slope] = at(to);
+        let falls = last <= 0.0 && slope + bend * h < 0.0;
+        if falls || h < 1e-9 * length {
+            if last <= 0.0 {
+                return Some(root_between(at, from, to));
+            }
+            continue;
+        }
+        let middle = 0.5 * (from + to);
+        let value = at(middle)[0];
+        stretches.push([(middle, value), (to, last)]);
+        stretches.push([(from, first), (middle, value)]);
+    }
+    None
+}
+
+/// The root of a function, given with its slope, that falls through zero between two places: Newton's iteration kept inside by bisection.
+fn root_between(at: impl Fn(f64) -> [f64; 2], mut lower: f64, mut upper: f64) -> f64 {
+    let (mut theta, length) = (upper, upper);
+    for _ in 0..100 {
+        let [value, slope] = at(theta);
+        if value > 0.0 {
+            lower = theta
+        } else {
+            upper = theta
+        }
+        let newton = theta - value / slope;
+        let next = if newton > lower && newton < upper { newton } else { 0.5 * (lower + upper) };
+        if (next - theta).abs() <= 2.0 * f64::EPSILON * length {
+            break;
+        }
+        theta = next;
+    }
+    theta
+}
+
+/// A step as observers see it: a polynomial.
+struct Piece<'a> {
+    equations: &'a RegularisedContact,
+    series: &'a ContactSeries,
+    /// Time from which the regularised state counts, s.
+    touch_down: f64,
+    length: f64,
+    ends: [Knot<4>; 2],
+    /// A bound on the energy norm of the motion in it, √J.
+    energy: f64,
+    /// Bounds over all of it.
+    slopes: OnceCell<[[f64x4; 2]; 3]>,
+    growth: OnceCell<[Growth<ORDERS>; 2]>,
+}
+
+impl Segment<4> for Piece<'_> {
+    fn energy(&self) -> f64 {
+        self.energy
+    }
+    fn ends(&self) -> [&Knot<4>; 2] {
+        [&self.ends[0], &self.ends[1]]
+    }
+    fn length(&self) -> f64 {
+        self.length
+    }
+    fn at(&self, theta: f64) -> Knot<4> {
+        knot(self.equations, self.touch_down, &self.series.at(theta))
+    }
+    fn at_time(&self, t: f64) -> Knot<4> {
+        let advance = |theta| self.series.at(theta).state;
+        let (theta, _) = at_elapsed(advance, self.length, t - self.touch_down);
+        Knot { t, ..self.at(theta) }
+    }
+    fn quintic_error(&self, form: &Form<4>, _ends: [&Knot<4>; 2], h: f64, _sharp: bool) -> Option<f64> {
+        let bounds = || self.equations.growth_in_series(&self.series.bounds(self.length));
+        let [growth, rates] = self.growth.get_or_init(bounds);
+        Some(QUINTIC * 720.0 * h.powi(6) * form.in_contact::<ORDERS>(growth, rates, 6)) // 6! of a Taylor coefficient
+    }
+    fn rise(&self, form: &Form<4>, ends: [&Knot<4>; 2], slopes: [f64; 2], h: f64) -> f64 {
+        let bounds = self.slopes.get_or_init(|| self.series.bounds(self.length));
+        let states = ends.map(|knot| self.state(knot));
+        form.rise_between(&self.equations.change_in_series(bounds, h, states.each_ref()), slopes, h)
+    }
+}
+
+impl Piece<'_> {
+    /// The regularised state of a moment; `q` is taken from the clock, because it has lost digits in the state.
+    fn state(&self, knot: &Knot<4>) -> RegularisedState {
+        let [_, w, x1, v1, _] = self.equations.regularise(&knot.y);
+        [knot.clock[0], w, x1, v1, knot.t - self.touch_down]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The terms of a product of `x - root`.
+    fn with_roots(roots: &[f64]) -> Vec<f64> {
+        let mut terms = vec![1.0];
+        for root in roots {
+            terms.insert(0, 0.0);
+            for k in 0..terms.len() - 1 {
+                terms[k] -= root * terms[k + 1];
+            }
+        }
+        terms
+    }
+
+    #[test]
+    fn exact_the_first_root_of_a_polynomial_is_found_however_near_the_next_is() {
+        for apart in [0.5, 1e-2, 1e-4, 1e-6] {
+            let terms = with_roots(&[0.3, 0.3 + apart]);
+            let found = first_root(&terms, 1.0).expect("two roots");
+            assert!((found - 0.3).abs() < 1e-15 / apart, "{apart}: {found}");
+            assert_eq!(first_root(&terms, 0.29), None, "{apart}: before it");
+        }
+        // One at the start is where the contact began.
+        let terms: Vec<f64> = with_roots(&[0.0, 0.7]).iter().map(|term| -term).collect();
+        assert!((first_root(&terms, 1.0).expect("a root") - 0.7).abs() < 1e-15);
+        assert_eq!(first_root(&terms, 0.6), None);
+        // x² - 0.6 x + 0.09 + 1e-9 comes close to zero.
+        assert_eq!(first_root(&[0.09 + 1e-9, -0.6, 1.0], 1.0), None);
+    }
+}
