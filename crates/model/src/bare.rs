@@ -99,7 +99,11 @@ impl Bare {
 
     /// The force at time `t` (s) of a stretch, as [`Self::excitation`].
     pub fn excitation_in(&self, stretch: &Stretch, t: f64) -> Excitation {
-        let ([f, s], elapsed) = (stretch.begin, t - stretch.from);
+        self.turned(stretch.begin, t - stretch.from)
+    }
+
+    /// The force so many seconds after it was this.
+    pub fn turned(&self, [f, s]: Excitation, elapsed: f64) -> Excitation {
         if [f, s] == [0.0; 2] {
             return [0.0; 2];
         }

@@ -12,7 +12,7 @@
 //! A loss, `K q³ (1 + λ w)`, leaves it polynomial. Where that would pull the force is zero, until the damper has left the wall or is pressed
 //! into it again: [`RegularisedContact::set_force`].
 //! With the same restitution at every speed the factor is not polynomial but analytic, in `q` too, as it depends on `q⁵` (`crate::loss`).
-//! The force is a Taylor polynomial in the time since it was last set ([`RegularisedContact::set_excitation`]).
+//! The force is a Taylor polynomial in the time since it was last set ([`RegularisedContact::set_excitation`]), but in a series (`series`).
 
 pub(crate) mod bounds;
 pub(crate) mod overdamped;
@@ -283,9 +283,10 @@ impl RegularisedContact {
         self.accelerations(y)[0]
     }
 
-    /// The acceleration into the wall by all forces but Hertz's, m/s².
-    pub fn pull(&self, y: &RegularisedState) -> f64 {
-        self.accelerations_by(0.0, y)[0]
+    /// The acceleration into the wall by all forces but Hertz's, m/s²; long after the force was set, with no more of it than its amplitude.
+    pub fn pull(&self, &[q, w, x1, v1, t]: &RegularisedState) -> f64 {
+        let force = self.wave(&self.cos, t - self.since).clamp(-self.amplitude, self.amplitude);
+        self.balance(0.0, [q * q + self.stretch, w, x1, v1], force)[0]
     }
 
     /// `κ = K (1/m1 + 1/m2)`: the contact force accelerates the bodies apart by `κ z^(3/2)`; m^-0.5 s^-2.
@@ -298,9 +299,10 @@ impl RegularisedContact {
         (0.8 * self.hertz[1] * q.powi(5)).sqrt()
     }
 
-    /// The rate at which spring and wall turn the damper at `q`, rad/s.
+    /// The fastest of the rates at which spring and wall turn the damper at `q`, the structure's spring turns it, and the force turns, rad/s.
     pub fn turning(&self, q: f64) -> f64 {
-        (self.spring[1] + 1.5 * self.hertz[1] * q).sqrt()
+        let damper = self.spring[1] + 1.5 * self.hertz[1] * q;
+        damper.max(self.primary[2]).sqrt().max(self.frequency())
     }
 
     /// `(1/m1 + 1/m2) m1`: the relative acceleration of the two bodies under a contact force, over that of the PS.

@@ -10,8 +10,8 @@ use crate::run::Follow;
 use crate::settings::{Settings, Window};
 use retune_model::{Bare, Coupled, Scene};
 
-/// Nodes of Gauss's rule on a segment. A step of the exact flow is at most 1.25 times as long as its fastest motion takes, over which the rule
-/// is exact to rounding; a segment of a contact is shorter.
+/// Nodes of Gauss's rule on a segment. In a step of the exact flow, and of a contact, the fastest motion turns by at most 1.25 and 1.5 rad, over which
+/// the rule is exact to rounding.
 const NODES: usize = 8;
 
 /// The energy that a motion loses, J.

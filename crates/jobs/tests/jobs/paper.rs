@@ -12,7 +12,12 @@ use std::collections::BTreeSet;
 
 /// The paper's plan with windows of seconds and grids of a few points.
 fn small() -> Desk {
-    let desk = Desk::with_table2("table2.json", |study| study["window"] = json!({ "t0": 5, "T": 10 }));
+    let desk = Desk::with_table2("table2.json", |study| {
+        study["window"] = json!({ "t0": 5, "T": 10 });
+        for axis in study["optimize"]["surf"].as_object_mut().expect("axes").values_mut() {
+            axis["points"] = json!(4);
+        }
+    });
     let mut plan = committed("paper.json");
     plan["k1"] = json!([3.00e4, 3.95e4, 5.00e4]);
     plan["omega"] = json!({ "from": 4, "to": 9, "points": 11 });
@@ -43,7 +48,7 @@ fn contract_reproduce_makes_one_page_that_needs_nothing_else() {
     let record = Record::default();
     good(reproduce(&Request { threads: Some(2), ..request(&desk, "one") }, None, &record));
     // With one thread the same, of what is quick.
-    for item in ["figure3", "figure4", "table1"] {
+    for item in ["figure3", "table1"] {
         good(reproduce(&Request { threads: Some(1), ..request(&desk, item) }, Some(item), &Silent));
         let apart = ["manifest.json", "resolved.json", "study.json"];
         for name in desk.names(item).iter().filter(|name| !apart.contains(&name.as_str())) {

@@ -97,8 +97,8 @@ pub trait Observer<const N: usize> {
     fn touch_down(&mut self, _t: f64, _side: Side) {}
     /// The damper has struck a rigid wall: between two segments the state jumps.
     fn impact(&mut self, _impact: &Impact<N>) {}
-    /// Whether it follows every piece of a contact: one that loses energy is then integrated step by step, in fewer pieces, and from none is the
-    /// fast part of a strong dashpot left out.
+    /// Whether it follows every piece of a contact: contacts in steps are then those of DOP853, one that loses energy is never collocated, and from
+    /// none is the fast part of a strong dashpot left out.
     fn follows_contacts(&self) -> bool {
         false
     }

@@ -38,6 +38,12 @@ impl<Q: Quantity<4>> Observer<4> for Held<Q> {
     fn segment(&mut self, segment: &dyn Segment<4>) {
         let (h, [first, _]) = (segment.length(), segment.ends());
         let kind = usize::from(first.clock != [1.0, 0.0]);
+        // Slopes at its ends are by its own clock, not by that of flight: as exact as the loosest runs.
+        for (end, theta) in segment.ends().into_iter().zip([0.0, h]) {
+            let ([rate, bend], there) = (end.clock, segment.at(theta).clock);
+            let size = rate.abs() + h * bend.abs();
+            assert!((rate - there[0]).abs() <= 0.01 * size, "{:?} {there:?}", end.clock);
+        }
         // The last digits of a contact's ends are another computation's: the piece is taken between moments of its own.
         let (from, to) = (0.001 * h, 0.999 * h);
         let [begin, end] = [from, to].map(|theta| segment.at(theta));

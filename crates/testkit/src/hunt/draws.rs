@@ -55,14 +55,22 @@ fn lossy(draw: &mut Spread) -> Numbers {
 }
 
 /// A damper that its spring, up to 3000 times as stiff as an engineer's, holds to a wall for half of each period; one in three with λ, and one in
-/// nine with a dashpot up to 2500 times as strong.
+/// nine with a dashpot up to 2500 times as strong. One in three has walls as soft as rubber or softer, and a force that may turn faster than they turn
+/// the damper.
 fn held(draw: &mut Spread) -> Numbers {
-    let numbers = Numbers {
+    let mut numbers = Numbers {
         k2: draw.logarithmic(1e3, 1e7),
         c2: draw.logarithmic(0.1, 1e3),
         d: if draw.unit() < 0.7 { 0.0 } else { draw.logarithmic(1e-6, 1e-2) },
         ..anywhere(draw)
     };
+    if draw.unit() < 1.0 / 3.0 {
+        let soft = draw.logarithmic(1e-5, 1.0);
+        numbers.young = numbers.young.map(|modulus| soft * modulus);
+        numbers.omega = draw.logarithmic(3.0, 300.0);
+        numbers.k2 = draw.logarithmic(1.0, 1e4);
+        numbers.p = draw.logarithmic(1e-2, 800.0);
+    }
     if draw.unit() < 1.0 / 3.0 {
         Numbers { lambda: draw.logarithmic(1e-3, 100.0), ..numbers }
     } else if draw.unit() < 1.0 / 6.0 {
