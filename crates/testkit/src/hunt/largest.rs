@@ -236,9 +236,17 @@ pub fn beside_everywhere(scenes: Scenes, count: u64) -> Hunt {
             (number, search(&scene, from, rtol))
         })
         .collect();
-    let (mut pieces, mut contact_scenes, mut faults, mut undecided) = (0, 0, Vec::new(), 0);
+    let (mut pieces, mut contact_scenes, mut faults, mut undecided, mut long) = (0, 0, Vec::new(), 0, 0);
     for (number, found) in looked {
-        let (missed, seen) = found.unwrap_or_else(|error| panic!("{what} {number}: {error}"));
+        let (missed, seen) = match found {
+            Ok(found) => found,
+            // A look everywhere counts as work, too.
+            Err(SolverError::TooManySteps { .. } | SolverError::TooSlow { .. }) => {
+                long += 1;
+                continue;
+            }
+            Err(error) => panic!("{what} {number}: {error}"),
+        };
         pieces += seen;
         contact_scenes += u64::from(seen > 0);
         let allowed = allowed(&drawn(number, scene), &missed);
@@ -257,11 +265,13 @@ pub fn beside_everywhere(scenes: Scenes, count: u64) -> Hunt {
     }
     let mut hunt = Hunt::default();
     hunt.row(format!(
-        "| {what} | {count} | {contact_scenes} | {pieces} pieces of contacts | 1e-9 | {}{} |",
+        "| {what} | {}{count} | {contact_scenes} | {pieces} pieces of contacts | 1e-9 | {}{} |",
+        if long > 0 { format!("{} of ", count - long) } else { String::new() },
         faults.len(),
         if undecided > 0 { format!("; {undecided} not proven") } else { String::new() }
     ));
     hunt.faults = faults;
+    hunt.check(long <= count / 50, || format!("{long} of {count} scenes are beyond their limit on steps"));
     hunt.check(undecided <= count / 50, || format!("{undecided} of {count} scenes are not proven"));
     hunt.check(contact_scenes > count / 4, || format!("{contact_scenes} of {count} scenes have contacts"));
     hunt
