@@ -111,7 +111,9 @@ fn contract_bounds_on_k2_follow_k1_unless_they_are_fixed() {
     let desk = moving();
     let mut study = committed("retune-tmd-free.json");
     let damper = study["scene"]["damper"].as_object_mut().expect("a damper");
-    ["D", "C", "contact"].map(|wall| damper.remove(wall));
+    for wall in ["D", "C", "contact"] {
+        damper.remove(wall);
+    }
     let mut table = desk.read_json("retune.json");
     table["rows"][0]["paper"] = json!({ "k2": 215, "c2": 232 });
     desk.write_json("retune.json", &table);
