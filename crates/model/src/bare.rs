@@ -102,7 +102,7 @@ impl Bare {
         self.turned(stretch.begin, t - stretch.from)
     }
 
-    /// The force so many seconds after it was this.
+    /// `[P cos(ωt + φ), P sin(ωt + φ)]` (N), or what takes its place under a history, `elapsed` seconds after it was this.
     pub fn turned(&self, [f, s]: Excitation, elapsed: f64) -> Excitation {
         if [f, s] == [0.0; 2] {
             return [0.0; 2];

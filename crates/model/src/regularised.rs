@@ -283,10 +283,12 @@ impl RegularisedContact {
         self.accelerations(y)[0]
     }
 
-    /// The acceleration into the wall by all forces but Hertz's, m/s²; long after the force was set, with no more of it than its amplitude.
-    pub fn pull(&self, &[q, w, x1, v1, t]: &RegularisedState) -> f64 {
+    /// The largest `q` (√m) to which the forces of this state but Hertz's would press the damper from rest: `(5 a / 2κ)^(1/3)` with their acceleration
+    /// `a` into the wall, 0 if they pull it away. Long after the force was set no more of it counts than its amplitude.
+    pub fn pressed_depth(&self, &[q, w, x1, v1, t]: &RegularisedState) -> f64 {
         let force = self.wave(&self.cos, t - self.since).clamp(-self.amplitude, self.amplitude);
-        self.balance(0.0, [q * q + self.stretch, w, x1, v1], force)[0]
+        let [pull, _] = self.balance(0.0, [q * q + self.stretch, w, x1, v1], force);
+        (2.5 * pull.max(0.0) / self.hertz[1]).cbrt()
     }
 
     /// `κ = K (1/m1 + 1/m2)`: the contact force accelerates the bodies apart by `κ z^(3/2)`; m^-0.5 s^-2.

@@ -48,7 +48,7 @@ fn contract_reproduce_makes_one_page_that_needs_nothing_else() {
     let record = Record::default();
     good(reproduce(&Request { threads: Some(2), ..request(&desk, "one") }, None, &record));
     // With one thread the same, of what is quick.
-    for item in ["figure3", "table1"] {
+    for item in ["figure3", "figure4", "table1"] {
         good(reproduce(&Request { threads: Some(1), ..request(&desk, item) }, Some(item), &Silent));
         let apart = ["manifest.json", "resolved.json", "study.json"];
         for name in desk.names(item).iter().filter(|name| !apart.contains(&name.as_str())) {

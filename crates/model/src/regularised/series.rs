@@ -23,6 +23,11 @@ pub struct ContactSeries {
     carried: [f64x4; MOST],
 }
 
+// The series in the order of [`ContactSeries::bounds`].
+const DRIVING: usize = 0;
+const FORCED: usize = 1;
+const CARRIED: usize = 2;
+
 /// What a series says of a moment.
 pub struct SeriesMoment {
     /// The state.
@@ -54,7 +59,7 @@ impl ContactSeries {
         self.terms
     }
 
-    /// Sets it to the series about a state under an excitation.
+    /// Sets it to the series about a state under an excitation (N), in units of `unit` (s/√m).
     pub fn expand(
         &mut self,
         equations: &RegularisedContact,
@@ -92,6 +97,57 @@ impl ContactSeries {
                 carried[k + 1] = f64x4::new([along, w_next, q, 0.0]) * next;
             }
         }
+    }
+
+    /// The moment at `θ`, s/√m.
+    pub fn at(&self, theta: f64) -> SeriesMoment {
+        let [[q, v1, cos, sin], [x1, w, t, _]] =
+            [&self.driving, &self.carried].map(|series| self.sum(series, theta).to_array());
+        SeriesMoment { state: [q, w, x1, v1, t], excitation: [cos, sin] }
+    }
+
+    /// `Σ c_k θ^k`, even and odd terms apart.
+    fn sum(&self, c: &[f64x4; MOST], theta: f64) -> f64x4 {
+        let theta = theta / self.unit;
+        let square = f64x4::splat(theta * theta);
+        let (mut even, mut odd) = (f64x4::ZERO, f64x4::ZERO);
+        for pair in c[..self.terms].chunks_exact(2).rev() {
+            (even, odd) = (even * square + pair[0], odd * square + pair[1]);
+        }
+        even + odd * theta
+    }
+
+    /// Terms of `q`, in that unit.
+    pub fn root(&self) -> [f64; MOST] {
+        self.driving.map(|terms| terms.to_array()[0])
+    }
+
+    /// The length (s/√m), at most `most`, to which both of the last terms of `q` (√m), `w` and `v1` (m/s) stay below these sizes.
+    pub fn reach(&self, [q, w, v1]: [f64; 3], most: f64) -> f64 {
+        let share = |k: usize| {
+            let [of_q, of_v1, ..] = self.driving[k].to_array();
+            let [_, of_w, ..] = self.carried[k].to_array();
+            (of_q.abs() / q).max(of_w.abs() / w).max(of_v1.abs() / v1)
+        };
+        let within = |most: f64, k: usize| {
+            let share = share(k);
+            if share * most.powi(k as i32) <= 1.0 { most } else { share.powf(-1.0 / k as f64).min(most) }
+        };
+        self.unit * [self.terms - 2, self.terms - 1].into_iter().fold(most / self.unit, within)
+    }
+
+    /// Bounds on the first Taylor coefficients in `θ`, of all series, anywhere in the first `length` (s/√m) of it: each term by its size.
+    pub fn bounds<const K: usize>(&self, length: f64) -> [[f64x4; K]; 3] {
+        [&self.driving, &self.forced, &self.carried].map(|series| {
+            let (mut terms, length) = (series.map(f64x4::abs), length / self.unit);
+            for order in 0..K {
+                for k in (order..self.terms - 1).rev() {
+                    let above = terms[k + 1];
+                    terms[k] += above * length;
+                }
+            }
+            std::array::from_fn(|k| terms[k] * self.unit.powi(-(k as i32)))
+        })
     }
 }
 
@@ -138,63 +194,5 @@ impl RegularisedContact {
         let mut stretch = of(FORCED, 0);
         stretch[0] += self.stretch.abs();
         [[x1, v1, stretch, w], [v1, of(FORCED, 2), w, of(FORCED, 1)]]
-    }
-}
-
-// The series in the order of [`ContactSeries::bounds`].
-const DRIVING: usize = 0;
-const FORCED: usize = 1;
-const CARRIED: usize = 2;
-
-impl ContactSeries {
-    /// The moment at `θ`.
-    pub fn at(&self, theta: f64) -> SeriesMoment {
-        let [[q, v1, cos, sin], [x1, w, t, _]] =
-            [&self.driving, &self.carried].map(|series| self.sum(series, theta).to_array());
-        SeriesMoment { state: [q, w, x1, v1, t], excitation: [cos, sin] }
-    }
-
-    /// `Σ c_k θ^k`, even and odd terms apart.
-    fn sum(&self, c: &[f64x4; MOST], theta: f64) -> f64x4 {
-        let theta = theta / self.unit;
-        let square = f64x4::splat(theta * theta);
-        let (mut even, mut odd) = (f64x4::ZERO, f64x4::ZERO);
-        for pair in c[..self.terms].chunks_exact(2).rev() {
-            (even, odd) = (even * square + pair[0], odd * square + pair[1]);
-        }
-        even + odd * theta
-    }
-
-    /// Terms of `q`, in that unit.
-    pub fn root(&self) -> [f64; MOST] {
-        self.driving.map(|terms| terms.to_array()[0])
-    }
-
-    /// The length, at most `most`, to which both of the last terms of `q`, `w` and `v1` stay below these sizes.
-    pub fn reach(&self, [q, w, v1]: [f64; 3], most: f64) -> f64 {
-        let share = |k: usize| {
-            let [of_q, of_v1, ..] = self.driving[k].to_array();
-            let [_, of_w, ..] = self.carried[k].to_array();
-            (of_q.abs() / q).max(of_w.abs() / w).max(of_v1.abs() / v1)
-        };
-        let within = |most: f64, k: usize| {
-            let share = share(k);
-            if share * most.powi(k as i32) <= 1.0 { most } else { share.powf(-1.0 / k as f64).min(most) }
-        };
-        self.unit * [self.terms - 2, self.terms - 1].into_iter().fold(most / self.unit, within)
-    }
-
-    /// Bounds on the first Taylor coefficients anywhere in the first `length` of it: each term by its size.
-    pub fn bounds<const K: usize>(&self, length: f64) -> [[f64x4; K]; 3] {
-        [&self.driving, &self.forced, &self.carried].map(|series| {
-            let (mut terms, length) = (series.map(f64x4::abs), length / self.unit);
-            for order in 0..K {
-                for k in (order..self.terms - 1).rev() {
-                    let above = terms[k + 1];
-                    terms[k] += above * length;
-                }
-            }
-            std::array::from_fn(|k| terms[k] * self.unit.powi(-(k as i32)))
-        })
     }
 }

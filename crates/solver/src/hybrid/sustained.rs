@@ -14,7 +14,7 @@ impl Hybrid<'_> {
     /// Follows a contact step by step from a state in it, until lift-off or `to`.
     pub(super) fn contact(
         &mut self,
-        mut equations: RegularisedContact,
+        equations: RegularisedContact,
         from: &Knot<4>,
         regularised: RegularisedState,
         to: f64,
@@ -22,9 +22,8 @@ impl Hybrid<'_> {
     ) -> Result<End, SolverError> {
         let (followed, stiff) = (observer.follows_contacts(), self.reduced.is_some());
         if !equations.is_lossy() && !followed && !stiff {
-            equations.set_excitation(regularised[4], from.excitation);
             let limits = (self.system, self.rtol, self.budget);
-            return follow(&equations, (*from, regularised), to, limits, &mut self.work, observer);
+            return follow(equations, (*from, regularised), to, limits, &mut self.work, observer);
         }
         let limits = (self.system, self.rtol, self.budget, stiff && !followed);
         integrate(equations, from, regularised, to, limits, (&mut self.work, &self.shared), observer)

@@ -45,6 +45,12 @@ pub fn knot(equations: &RegularisedContact, touch_down: f64, y: &RegularisedStat
     }
 }
 
+/// The regularised state of a moment; `q` is taken from the clock, because it has lost digits in the state.
+pub fn regularised(equations: &RegularisedContact, touch_down: f64, knot: &Knot<4>) -> RegularisedState {
+    let [_, w, x1, v1, _] = equations.regularise(&knot.y);
+    [knot.clock[0], w, x1, v1, knot.t - touch_down]
+}
+
 /// One step of DOP853 from `y`, with the derivative `slope` there. A speed that follows the forces does so at its end.
 #[inline(always)]
 pub fn step(
@@ -110,10 +116,8 @@ impl Segment<4> for Piece<'_> {
 }
 
 impl Piece<'_> {
-    /// The regularised state of a moment; `q` is taken from the clock, because it has lost digits in the state.
     fn state(&self, knot: &Knot<4>) -> RegularisedState {
-        let [_, w, x1, v1, _] = self.equations.regularise(&knot.y);
-        [knot.clock[0], w, x1, v1, knot.t - self.touch_down]
+        regularised(self.equations, self.touch_down, knot)
     }
 
     /// How far the motion goes between two places `h` apart.

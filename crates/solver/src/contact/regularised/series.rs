@@ -1,8 +1,8 @@
-//! Contacts without loss, in steps of Taylor series: a step goes as far as the damper turns on its wall, and all that observers ask of its interior
-//! is a polynomial.
+//! Contacts without loss, in steps of Taylor series: a step is as long as the motion takes to turn, and all that observers ask of its interior is a
+//! polynomial.
 
 use super::integrate::End;
-use super::piece::{Q, TIME, W, at_elapsed};
+use super::piece::{Q, TIME, W, at_elapsed, regularised};
 use crate::budget::Budget;
 use crate::error::SolverError;
 use crate::motion::form::{Form, QUINTIC};
@@ -16,8 +16,8 @@ use retune_model::{
 use std::cell::OnceCell;
 use wide::f64x4;
 
-/// The angle (rad) by which spring and wall turn the damper in a step at most: observers expect of a segment that a speed changes its sign once, and
-/// that a rule of 8 nodes is exact on it.
+/// The angle (rad) by which the fastest of damper, structure and force turns in a step at most: observers expect of a segment that a speed changes its
+/// sign once, and that a rule of 8 nodes is exact on it.
 const TURN: f64 = 1.5;
 
 /// The share of the error allowed in a step that its last two terms may make up. The first term left out is smaller.
@@ -34,7 +34,7 @@ const LARGEST: f64 = 1e-6;
 /// # Errors
 /// [`SolverError`] with the time reached.
 pub fn follow(
-    equations: &RegularisedContact,
+    mut equations: RegularisedContact,
     (mut start, mut y): (Knot<4>, RegularisedState),
     to: f64,
     (system, rtol, budget): (&Coupled, f64, Budget),
@@ -43,6 +43,7 @@ pub fn follow(
 ) -> Result<End, SolverError> {
     let (touch_down, rtol) = (start.t - y[TIME], rtol.min(LARGEST));
     start.clock = [y[Q], 0.5 * y[W]];
+    equations.set_excitation(y[TIME], start.excitation);
     let mut speed = 0.0_f64;
     let mut series = ContactSeries::for_turn(TURN, rtol);
     loop {
@@ -54,10 +55,10 @@ pub fn follow(
             return Err(budget.no_progress(work, start.t)); // squares of its speed overflow
         }
         // Other forces may press it deeper: about that depth its terms are of ordinary size.
-        let pressed = (2.5 * equations.pull(&y).max(0.0) / equations.hertz_rate()).cbrt().max(depth);
-        series.expand(equations, &y, start.excitation, 1.0 / (pressed * equations.turning(pressed)));
+        let pressed = equations.pressed_depth(&y).max(depth);
+        series.expand(&equations, &y, start.excitation, 1.0 / (pressed * equations.turning(pressed)));
         let Step { length, mut end, state, event } =
-            step(equations, &series, &y, (touch_down, to), (rtol, speed, depth), work)?;
+            step(&equations, &series, &y, (touch_down, to), (rtol, speed, depth), work)?;
         if equations.frequency() * (end.t - start.t) > CARRIED {
             end.excitation = system.bare().turned(start.excitation, end.t - start.t);
         }
@@ -65,7 +66,7 @@ pub fn follow(
         let energy =
             (2.0 * system.total_energy(&start.y)).sqrt() + (end.t - start.t) * system.energy_norm_growth();
         let piece = Piece {
-            equations,
+            equations: &equations,
             series: &series,
             touch_down,
             length,
@@ -120,7 +121,7 @@ fn step(
     let sizes = [q, speed, speed / equations.mass_ratio()].map(|size| share * size);
     let mut length = series.reach(sizes, TURN / (q * turning));
     let mut moment = series.at(length);
-    // The polynomials obey the equations at the end, too.
+    // The accelerations of the polynomials are those of their states at the end, too.
     while equations.defect(series, length, &moment) * length * q > allowed {
         work.rejected += 1;
         length *= 0.5;
@@ -168,7 +169,7 @@ fn first_root(terms: &[f64], length: f64) -> Option<f64> {
     if terms[0] > others {
         return None;
     }
-    // Value, slope and curvature.
+    // Value and slope.
     let at = |theta: f64| {
         let [mut value, mut slope] = [0.0; 2];
         for term in terms.iter().rev() {
@@ -261,16 +262,8 @@ impl Segment<4> for Piece<'_> {
     }
     fn rise(&self, form: &Form<4>, ends: [&Knot<4>; 2], slopes: [f64; 2], h: f64) -> f64 {
         let bounds = self.slopes.get_or_init(|| self.series.bounds(self.length));
-        let states = ends.map(|knot| self.state(knot));
+        let states = ends.map(|knot| regularised(self.equations, self.touch_down, knot));
         form.rise_between(&self.equations.change_in_series(bounds, h, states.each_ref()), slopes, h)
-    }
-}
-
-impl Piece<'_> {
-    /// The regularised state of a moment; `q` is taken from the clock, because it has lost digits in the state.
-    fn state(&self, knot: &Knot<4>) -> RegularisedState {
-        let [_, w, x1, v1, _] = self.equations.regularise(&knot.y);
-        [knot.clock[0], w, x1, v1, knot.t - self.touch_down]
     }
 }
 
@@ -287,13 +280,12 @@ mod tests {
     fn regress_a_weak_fast_force_is_carried_to_rounding() {
         let young = [2.1e11, 2.2e5, 2.1e11, 2.2e5];
         let system = Numbers { p: 1e-3, omega: 900.0, d: 0.0, young, ..SSVI }.coupled();
-        let mut equations = system.regularised_contact(Side::Primary);
+        let equations = system.regularised_contact(Side::Primary);
         let (y, excitation) = ([-1.0, 0.0, -1.027, 0.0], system.excitation(0.0));
-        equations.set_excitation(0.0, excitation);
         let start = (Knot { t: 0.0, excitation, y, clock: [1.0, 0.0] }, equations.regularise(&y));
         let mut work = Work::default();
         let budget = Budget::new(Pace::Steps, 100_000, work, [0.0, 0.2]);
-        let end = follow(&equations, start, 0.2, (&system, 1e-6, budget), &mut work, &mut Unobserved);
+        let end = follow(equations, start, 0.2, (&system, 1e-6, budget), &mut work, &mut Unobserved);
         let End::InContact(end) = end.expect("a contact") else { panic!("it is left") };
         let exact = system.excitation(0.2);
         let off = (end.excitation[0] - exact[0]).hypot(end.excitation[1] - exact[1]);
