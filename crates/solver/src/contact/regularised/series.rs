@@ -271,9 +271,11 @@ impl Segment<4> for Piece<'_> {
 mod tests {
     use super::*;
     use crate::budget::Pace;
+    use crate::contact::regularised::integrate::integrate;
+    use crate::contact::regularised::shared::Shared;
     use crate::observe::observer::Unobserved;
     use retune_model::Side;
-    use retune_testkit::scenes::{Numbers, SSVI};
+    use retune_testkit::scenes::{Numbers, SSVI, TWO_SIDED};
 
     /// While the structure swings back from -1 m it presses the damper on a soft wall, and a force that is weak beside the wall's turns by 180 rad.
     #[test]
@@ -290,6 +292,60 @@ mod tests {
         let exact = system.excitation(0.2);
         let off = (end.excitation[0] - exact[0]).hypot(end.excitation[1] - exact[1]);
         assert!(off < 1e-12 * 1e-3 && work.steps > 50, "{off} in {} steps", work.steps);
+    }
+
+    /// Contacts from touch-down to lift-off, and one that a stiff spring holds until the run ends, beside the same in steps of DOP853.
+    #[test]
+    fn reference_contacts_in_series_end_where_those_in_steps_do() {
+        let soft = [2.1e11, 2.2e5, 2.1e11, 2.2e5];
+        let held = Numbers { d: 0.0, k2: 1e6, ..SSVI };
+        let fast = Numbers { omega: 60.0, young: soft, ..SSVI };
+        for numbers in [SSVI, TWO_SIDED, Numbers { young: soft, ..SSVI }, fast, held] {
+            let system = numbers.coupled();
+            for (side, speed) in
+                Side::BOTH.into_iter().flat_map(|side| [1.0, 0.01].map(|speed| (side, speed)))
+            {
+                let equations = system.regularised_contact(side);
+                let y = equations.physical(&[0.0, speed, 0.05, -0.4, 0.0]);
+                let from = Knot { t: 1.3, excitation: system.excitation(1.3), y, clock: [0.0, 0.5 * speed] };
+                let [mut series, mut steps] = [Work::default(); 2];
+                let budget = Budget::new(Pace::Steps, 100_000, Work::default(), [1.3, 2.3]);
+                let start = (from.clone(), equations.regularise(&y));
+                let found = follow(
+                    equations.clone(),
+                    start.clone(),
+                    2.3,
+                    (&system, 1e-11, budget),
+                    &mut series,
+                    &mut Unobserved,
+                );
+                let expected = integrate(
+                    equations,
+                    &from,
+                    start.1,
+                    2.3,
+                    (&system, 1e-13, budget, false),
+                    (&mut steps, &Shared::default()),
+                    &mut Unobserved,
+                );
+                let (found, expected) = match (found.expect("a contact"), expected.expect("a contact")) {
+                    (End::LiftOff(found), End::LiftOff(expected))
+                    | (End::InContact(found), End::InContact(expected)) => (found, expected),
+                    _ => panic!("{numbers:?}: one has left the wall, the other has not"),
+                };
+                assert!(
+                    (found.t - expected.t).abs() < 1e-10,
+                    "{numbers:?} {speed}: {} {}",
+                    found.t,
+                    expected.t
+                );
+                for i in 0..4 {
+                    let off = (found.y[i] - expected.y[i]).abs();
+                    assert!(off < 1e-10, "{numbers:?} {speed} {i}: {off}");
+                }
+                assert!(2 * series.steps < steps.steps, "{numbers:?}: {} {}", series.steps, steps.steps);
+            }
+        }
     }
 
     /// The terms of a product of `x - root`.
