@@ -120,7 +120,7 @@ figure N *OPTIONS:
 table N *OPTIONS:
     {{retune}} table "$@"
 
-# Run all tests of the program and its libraries
+# Test the program and its libraries; `just lab test-slow` has what takes longer
 [group('develop')]
 test *OPTIONS:
     cargo test "$@"

@@ -21,7 +21,7 @@ CRATES = {
         "--lib --test allocation --test solver -- --skip any_scene:: --skip edge:: --skip hunt::",
         "--test solver -- any_scene:: edge:: hunt::"]),
     "retune-optim": (["crates/optim/src/*"], ["--tests"]),
-    "retune-store": (["crates/store/src/*"], ["--tests", "@retune-jobs --tests", "@retune --tests"]),
+    "retune-store": (["crates/store/src/*"], ["--tests", "@retune-jobs --tests -- --include-ignored", "@retune --tests -- --include-ignored"]),
 }
 HOME = pathlib.Path("target/mutants")
 REASONS = pathlib.Path("tests/mutants.json")

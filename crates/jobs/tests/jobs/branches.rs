@@ -17,7 +17,7 @@ fn desk() -> Desk {
 }
 
 fn options() -> Options {
-    let [from, to] = ["5.2", "5.4"].map(|end| Some(end.to_owned()));
+    let [from, to] = ["5.2", "5.266"].map(|end| Some(end.to_owned()));
     Options { from, to, samples: 5, starts: 2, ..Options::default() }
 }
 
@@ -49,12 +49,7 @@ fn invariant_the_motions_of_a_study_are_the_same_for_any_number_of_threads() {
     assert_eq!(json["plan"]["over"], "omega");
     let events = desk.rows("out1/bifurcations.csv");
     assert!(events.iter().any(|row| row[2] == "period doubling"), "{events:?}");
-}
-
-#[test]
-fn contract_results_are_verified_and_a_changed_digit_is_found() {
-    let desk = desk();
-    good(branches(&request(&desk, 2), &options(), &Silent));
+    // They are verified.
     a_changed_digit_is_found(&desk, "out2", &["branches.csv", "bifurcations.csv", "attractors.csv"]);
 }
 
@@ -68,7 +63,7 @@ fn contract_what_is_asked_for_is_checked() {
     };
     let text = |text: &str| Some(text.to_owned());
     wrong(Options { from: text("fast"), ..options() }, "--from: ");
-    wrong(Options { from: text("6"), ..options() }, "--to: 5.4 is not above --from 6");
+    wrong(Options { from: text("6"), ..options() }, "--to: 5.266 is not above --from 6");
     wrong(Options { samples: 1, ..options() }, "2 to 10000 samples");
     wrong(
         Options { over: Parameter::K2, from: text("-1"), to: text("9"), ..options() },
@@ -95,6 +90,7 @@ fn contract_what_is_asked_for_is_checked() {
 /// The damper with an isola and 40 mm more D, which removes it: with a little more force it is back. Below the force that the margin says no
 /// isola is found, above it one is, where and as high as said.
 #[test]
+#[ignore = "slow: `just lab test-slow`"]
 fn exact_an_isola_begins_at_the_margin_of_the_force() {
     let mut study = committed("ssvi-isola.json");
     study["scene"]["damper"]["D"] = (0.607_212_882_590_035_9 + 0.04).into();
@@ -129,6 +125,7 @@ fn exact_an_isola_begins_at_the_margin_of_the_force() {
 /// The damper with an isola, where both motions are: a start of the plane ends on the motion that a run from it settles on, the one in the middle
 /// where the run from rest does; the table is the same for any number of threads, and is verified.
 #[test]
+#[ignore = "slow: `just lab test-slow`"]
 fn exact_starts_of_a_plane_end_where_their_runs_settle() {
     let desk = Desk::with(&committed("ssvi-isola.json"));
     let [from, to] = ["5.97", "5.99"].map(|end| Some(end.to_owned()));

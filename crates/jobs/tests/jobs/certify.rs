@@ -50,6 +50,7 @@ fn contract_limits_are_kept_and_reported() {
 /// Between its 15 samples this damper, a structure of the hunt of limits, has 18 % more; another motion has 300 times as much. The answer begins
 /// with the former, the verdict names both beside what it calls sensitive.
 #[test]
+#[ignore = "slow: `just lab test-slow`"]
 fn contract_a_verdict_names_all_it_found_and_an_answer_the_peak_that_samples_miss() {
     let contact = &tiny()["scene"]["damper"]["contact"];
     let study = json!({
@@ -124,6 +125,7 @@ fn contract_limits_that_no_design_keeps_leave_no_verdict() {
 
 /// Table 2's SSVI NES: predictable by every method, and yet a single chaotic realisation; the TMD is robust.
 #[test]
+#[ignore = "slow: `just lab test-slow`"]
 fn paper_table_2_is_certified() {
     let [_, tmd] = [("ssvi", "single chaotic realisation", "chaotic"), ("tmd", "robust", "T, 0, 0")].map(
         |(name, verdict, regime)| {

@@ -328,6 +328,7 @@ fn regress_a_damper_that_does_nothing_is_not_recommended() {
 
 /// What no TMD of this mass keeps is told, with a mass that does.
 #[test]
+#[ignore = "slow: `just lab test-slow`"]
 fn contract_limits_that_are_not_kept_are_answered_with_a_mass_that_keeps_them() {
     let tight = json!({
         "m1": "40t", "f1": "2Hz", "zeta": "0.5%", "force": "280N", "mass": "1%",
@@ -426,6 +427,7 @@ impl Observer for Told {
 /// With walls that lose energy, where runs take several times as long, an answer takes seconds: of a certain number of evaluations,
 /// not of a time. What is told of the best on the way never rises.
 #[test]
+#[ignore = "slow: `just lab test-slow`"]
 fn contract_walls_that_lose_energy_are_answered_within_a_number_of_evaluations() {
     let rig = json!({
         "m1": "2 kg", "f1": "8 Hz", "zeta": "0.5 %", "force": "1 N", "mass": "5 %", "wall": "R=20mm,steel,e=0.6"

@@ -50,6 +50,7 @@ fn rows(desk: &Desk, name: &str) -> Vec<(f64, String, f64, f64, f64)> {
 }
 
 #[test]
+#[ignore = "slow: `just lab test-slow`"]
 fn invariant_a_looser_bound_is_never_worse_and_each_is_kept() {
     let desk = desk();
     // With one thread here, with two below.

@@ -28,6 +28,7 @@ fn of(losses: &Losses, tuning: Tuning, restitution: f64) -> &Point {
 /// Each damper at each restitution, and without loss, which is not asked for; every row is what its design has, and nothing is lost in
 /// impacts that lose nothing.
 #[test]
+#[ignore = "slow: `just lab test-slow`"]
 fn contract_each_damper_is_compared_at_each_restitution() {
     let desk = Desk::with(&lossy(&[0.7]));
     let found = found(good(losses(&request(&desk, "study.json", "out"), &Silent)));

@@ -45,6 +45,7 @@ fn regress_a_damper_with_an_isola_is_robust_from_rest_only() {
 /// With 44 mm more D the isola is gone, and back for a quarter of a per cent more force, or as much less D: an edge that runs at the design's own
 /// force alone do not show. With smaller margins asked for, it is robust.
 #[test]
+#[ignore = "slow: `just lab test-slow`"]
 fn regress_a_design_beside_the_birth_of_an_isola_is_on_an_edge() {
     let at = [
         (Parameter::K2, 584.6096238462073),
@@ -86,6 +87,7 @@ fn contract_a_window_too_short_is_not_said_to_be_another_start() {
 
 /// The damper of `results/ssvi` has 225.814 J, 0.02 J more than that with the isola, and is taken.
 #[test]
+#[ignore = "slow: `just lab test-slow`"]
 fn contract_of_two_as_good_the_search_takes_the_one_that_is_safe() {
     let mut study = committed("ssvi-isola.json");
     let at = |k2: f64, c2: f64, d: f64, c: f64| json!({ "k2": k2, "c2": c2, "D": d, "C": c });

@@ -43,6 +43,7 @@ fn targets(page: &str) -> BTreeSet<String> {
 }
 
 #[test]
+#[ignore = "slow: `just lab test-slow`"]
 fn contract_reproduce_makes_one_page_that_needs_nothing_else() {
     let desk = small();
     let record = Record::default();

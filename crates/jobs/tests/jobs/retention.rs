@@ -54,6 +54,7 @@ fn moving() -> Desk {
 
 /// At the nominal k1 the nominal tuning is the re-tuned one; at others tuning anew is no worse.
 #[test]
+#[ignore = "slow: `just lab test-slow`"]
 fn contract_retention_begins_at_the_tuned_design() {
     let desk = moving();
     let record = Record::default();

@@ -20,6 +20,7 @@ fn study(forcing: &Value) -> Value {
 
 /// Over a whole draw, whose harmonics are orthogonal there, the mean squares of a run are those of the spectrum, but for the beginning from rest.
 #[test]
+#[ignore = "slow: `just lab test-slow`"]
 fn reference_the_root_mean_squares_are_those_of_a_long_run() {
     let spectrum = json!({ "omega": [0, 3, 6, 9, 12], "density": [0.004, 0.01, 0.02, 0.01, 0], "seed": 3 });
     for of in ["base acceleration", "force"] {

@@ -165,6 +165,7 @@ fn contract_a_directory_without_a_manifest_below_is_named() {
 /// The tables of a search have the penalty of a design that breaks its limits; `optimum.json` has its energy. A table of designs
 /// has the energy of a start that breaks the limits, and its job reports the broken limits.
 #[test]
+#[ignore = "slow: `just lab test-slow`"]
 fn contract_results_that_break_their_limits_are_verified() {
     let mut study = tiny();
     study["optimize"]["limits"] = json!({ "stroke": 1e-6 });

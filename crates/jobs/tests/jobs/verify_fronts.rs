@@ -28,6 +28,7 @@ fn contract_results_are_verified_and_a_changed_digit_is_found() {
 /// A study that varies the mass and the radius, too: they stand in every table of designs, for the damper of a row would be another one
 /// without them, and on the pages.
 #[test]
+#[ignore = "slow: `just lab test-slow`"]
 fn contract_tables_have_a_column_for_whatever_is_varied() {
     let desk = desk();
     let mut study = desk.read_json("study.json");

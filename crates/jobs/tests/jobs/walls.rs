@@ -83,6 +83,7 @@ fn exact_a_certificate_has_the_values_with_half_and_twice_the_stiffness() {
 
 /// A loss of another law is replaced; one that the objective is tuned for already needs no advice.
 #[test]
+#[ignore = "slow: `just lab test-slow`"]
 fn contract_other_walls_replace_the_loss_of_the_study() {
     let mut study = tuned();
     study["scene"]["damper"]["contact"]["loss"] = json!({ "lambda": 0.3 });

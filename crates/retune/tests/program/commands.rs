@@ -36,6 +36,7 @@ fn contract_certify_shows_the_certificate_and_where_it_is() {
 
 /// The results of several studies are named after the file that names them.
 #[test]
+#[ignore = "slow: `just lab test-slow`"]
 fn contract_tables_and_fronts_show_what_they_found_and_where_it_is() {
     let mut study = global(json!({ "omega": { "from": 7.5, "to": 7.8, "samples": 2 } }), json!({}));
     study["optimize"]["global"] = json!({ "samples": 8, "searches": 1, "evaluations": 10 });

@@ -11,6 +11,7 @@ fn example(name: &str) -> String {
 
 /// The command of the README and its lines, in their order; the results hold, and the same again discards nothing.
 #[test]
+#[ignore = "slow: `just lab test-slow`"]
 fn contract_the_answer_of_the_readme_is_that_of_the_program() {
     let readme = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md");
     let readme = std::fs::read_to_string(readme).expect("the README");

@@ -32,7 +32,7 @@ fn draws(width: f64) -> impl Strategy<Value = [f64; DRAWS]> {
 }
 
 proptest! {
-    #![proptest_config(config(600))]
+    #![proptest_config(config(300))]
 
     #[test]
     fn invariant_any_scene_has_a_finite_answer_or_a_typed_error(draws in draws(1.0)) {
@@ -150,7 +150,7 @@ fn reference_any_scene_that_touches_a_wall_agrees_with_dop853() {
         draws[26] = 0.9; // with a damper
         Anything::new(&draws).scene
     };
-    let widths = [0.4, 0.7, 1.0].into_iter().flat_map(|width| std::iter::repeat_n(width, 100));
+    let widths = [0.4, 0.7, 1.0].into_iter().flat_map(|width| std::iter::repeat_n(width, 50));
     scenes(&widths.map(&mut drawn_scene).collect::<Vec<_>>()).passes();
 }
 

@@ -260,8 +260,8 @@ fn reference_gradients_of_largest_values_agree_with_differences() {
         let numbers = random(&mut spread, scene % 2 == 1).0;
         scenes.push((Numbers { p, omega: spread.logarithmic(3.0, 15.0), ..numbers }, amplitude));
     }
-    // A fifth, of all kinds alike.
-    let scenes: Vec<Driven> = scenes.into_iter().step_by(5).collect();
+    // A ninth, of all kinds alike.
+    let scenes: Vec<Driven> = scenes.into_iter().step_by(9).collect();
     let largest = |(numbers, amplitude): &Driven, measure: Measure| {
         let ask = Ask { measure, also: Some(Also::walls(5.0)), ..Ask::default() };
         extremes(&numbers.forced_by(*amplitude), window, &settings(), ask).expect("a run").largest
@@ -305,7 +305,7 @@ fn reference_gradients_of_largest_values_agree_with_differences() {
     };
     let all = scenes.par_iter().flat_map_iter(|driven| Measure::ALL.map(|measure| compare(driven, measure)));
     let (compared, worst) = all.reduce(|| (0, 0.0), |a, b| (a.0 + b.0, a.1.max(b.1)));
-    assert!(compared > 1000 && worst < 1e-6, "{compared} {worst:e}");
+    assert!(compared > 500 && worst < 1e-6, "{compared} {worst:e}");
 }
 
 /// A settled motion reaches its largest value in every period: the derivative at any of them is that of the steady response.

@@ -373,7 +373,7 @@ fn invariant_extreme_parameters_give_finite_values_or_errors() {
             ..SSVI
         }
     };
-    let scenes: Vec<Numbers> = (0..160).map(|_| drawn()).collect();
+    let scenes: Vec<Numbers> = (0..60).map(|_| drawn()).collect();
     let settings = Settings { max_steps: 5_000, rtol: 1e-8, ..HYBRID };
     let finishes =
         |numbers: &&Numbers| match simulate(&numbers.scene(), Window { from: 0.0, to: 2.0 }, &settings) {
@@ -391,7 +391,7 @@ fn invariant_extreme_parameters_give_finite_values_or_errors() {
             Err(error) => panic!("{error} {numbers:?}"),
         };
     let finished = scenes.par_iter().filter(finishes).count();
-    assert!(finished > 60, "{finished}");
+    assert!(finished > 20, "{finished}");
 }
 
 /// Counts how often a quantity is looked at.

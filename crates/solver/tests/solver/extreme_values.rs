@@ -128,7 +128,7 @@ fn contract_extreme_values_end_with_a_value_or_with_advice_that_applies() {
 #[test]
 fn contract_extreme_values_by_other_methods() {
     for method in [Method::Ode45, Method::Ode23s, Method::Ode23, Method::Dop853, Method::Rk4, Method::Euler] {
-        sweep(method, 2.0, 2_500, 2);
+        sweep(method, 2.0, 2_500, 3);
     }
 }
 

@@ -4,7 +4,7 @@ use retune_testkit::hunt::repeats::{differences, repeats};
 
 #[test]
 fn invariant_a_run_that_repeats_has_seen_its_largest_values() {
-    repeats(1400).passes();
+    repeats(600).passes();
 }
 
 /// Irregular runs that once come close to a motion, look ahead in vain, and go on: to the last bit as if they had not looked.

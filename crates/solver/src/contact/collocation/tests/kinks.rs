@@ -126,8 +126,8 @@ fn exact_what_a_bend_costs_to_first_order() {
 /// The same where energy is lost.
 #[test]
 fn exact_what_a_bend_costs_to_first_order_with_loss() {
-    let restitutions = [0.3, 0.4, 0.6, 0.8, 0.95, 0.999].map(|e| Numbers { e, ..SSVI });
-    let dashpots = [0.1, 0.5, 1.0, 1.7].map(|lambda| Numbers { lambda, ..SSVI });
+    let restitutions = [0.3, 0.6, 0.999].map(|e| Numbers { e, ..SSVI });
+    let dashpots = [0.1, 1.7].map(|lambda| Numbers { lambda, ..SSVI });
     for numbers in restitutions.into_iter().chain(dashpots) {
         let loss = Loss::of(&numbers.coupled().regularised_contact(Side::BOTH[0])).expect("a loss");
         // At 1 m/s each χ is one of those that are kept.
