@@ -32,6 +32,8 @@ pub(crate) const IMBALANCE: &[Unit] = &[
     ("kg m", 1.0),
     ("kgm", 1.0),
     ("g·mm", 1e-6),
+    ("g mm", 1e-6),
+    ("gmm", 1e-6),
     ("kg·mm", 1e-3),
     ("kg mm", 1e-3),
     ("kgmm", 1e-3),
@@ -114,6 +116,8 @@ mod tests {
             ("3g", MASS, 0.003),
             ("8mm", LENGTH, 0.008),
             ("1e3", LENGTH, 1000.0),
+            ("2 g mm", IMBALANCE, 2e-6),
+            ("7 kg mm", IMBALANCE, 0.007),
         ] {
             assert_eq!(read(text, units), Ok(value), "{text}");
         }

@@ -131,10 +131,13 @@ pub(super) fn build(requirements: &Requirements, compared: &Comparison) -> Vec<S
         }
         (What::Tmd, Some(ssvi), _) => {
             let (has, as_much) = (said(ssvi.goal), as_much(ssvi.goal / chosen.goal));
-            let force = sized(ssvi.value(Measure::ContactForce), "N");
-            format!(
-                "; the best SSVI NES that was found has {has}, {as_much}, and strikes its walls with {force}"
-            )
+            let (steady, most) = (ssvi.value(Measure::ContactForce), ssvi.most().get(Measure::ContactForce));
+            let strikes = if steady > 0.0 {
+                format!("strikes its walls with {}", sized(steady, "N"))
+            } else {
+                format!("strikes its walls only on the way from rest, with {}", sized(most.value, "N"))
+            };
+            format!("; the best SSVI NES that was found has {has}, {as_much}, and {strikes}")
         }
         (What::Tmd, None, _) => {
             "; of the SSVI NES that were tried, none that strikes its walls comes near".to_owned()
@@ -218,9 +221,28 @@ pub(super) fn findings(requirements: &Requirements, compared: &Comparison) -> Ve
         let further = if further { " `retune certify` looks at more starts, and at more force." } else { "" };
         lines.push(format!("How sure: the {name} is {words}.{further}"));
     }
+    if let Some(held) = compared
+        .ssvi
+        .as_ref()
+        .and_then(|ssvi| ssvi.study.transient())
+        .filter(|_| requirements.run().is_none())
+    {
+        lines.push(format!("Not settled: of the SSVI NES, {held}."));
+    }
     if let (Some(other), Some(What::Ssvi)) = (compared.other_sign, compared.choice) {
-        let (name, other) = (compared.goal.name(), sized(other, compared.goal.unit()));
-        lines.push(format!("With the other sign of the shock or record it has {name} {other}."));
+        let (name, unit, tmd) = (compared.goal.name(), compared.goal.unit(), &compared.tmd);
+        let more = if tmd.feasible && other > tmd.goal {
+            format!(
+                ", more than the {} of the TMD with either: build it where the sign is known",
+                sized(tmd.goal, unit)
+            )
+        } else {
+            String::new()
+        };
+        lines.push(format!(
+            "With the other sign of the shock or record it has {name} {}{more}.",
+            sized(other, unit)
+        ));
     }
     if let Some(tried) = compared.tried {
         let tried = counted(tried as u64, "design");

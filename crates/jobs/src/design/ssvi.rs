@@ -147,12 +147,17 @@ pub(super) fn tell_compared(
     compared: Option<(&Candidate, f64)>,
     watch: &dyn Observer,
 ) -> Result<(), Error> {
-    let is_told = |of: &Candidate| found.ends.first().is_some_and(|(value, _)| *value == of.goal);
-    let Some((of, least)) = compared.filter(|(of, _)| of.feasible && !is_told(of)) else { return Ok(()) };
-    let why =
-        if of.goal == least { "the best that strikes its walls" } else { "nearly as good, and more certain" };
+    let Some((of, least)) = compared.filter(|(of, _)| of.feasible) else { return Ok(()) };
     let x = Parameter::PAPER.map(|parameter| of.damper().map_or(f64::NAN, |damper| parameter.get(&damper)));
-    watch.so_far(&format!("SSVI NES compared ({why}): {}", words(&of.study, of.goal, &x)))
+    let compared = words(&of.study, of.goal, &x);
+    let told = found.ends.first().map(|(value, end)| (words(&of.study, *value, end), end[..] == x));
+    let why = match told {
+        Some((words, _)) if words == compared => return Ok(()),
+        Some((_, true)) => "settled",
+        _ if of.goal == least => "the best that strikes its walls",
+        _ => "nearly as good, and more certain",
+    };
+    watch.so_far(&format!("SSVI NES compared ({why}): {compared}"))
 }
 
 /// Whether contacts lose energy: runs then take several times as long.

@@ -7,7 +7,7 @@ use retune_model::{Coupled, Design, Measure, NonNegative, Parameter, unit};
 use retune_optim::{Options, Scaling, minimize};
 use retune_solver::{Method, Settings, Window, e1_max};
 use retune_study::{Refine, Study};
-use retune_testkit::desk::Desk;
+use retune_testkit::desk::{Desk, flat};
 use retune_testkit::observers::{good, refused};
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
@@ -422,6 +422,39 @@ impl Observer for Told {
     fn progress(&self, _stage: &'static str, _count: u64) -> Box<dyn Progress> {
         Box::new(self.clone())
     }
+}
+
+/// A stroke that is kept small leaves a lightly damped structure swinging up for hundreds of periods: the damper with walls is compared once it has
+/// settled, not in periods 50 to 100, in which it would have 10.8 J.
+#[test]
+fn regress_a_damper_with_walls_is_compared_once_the_structure_has_settled() {
+    let tight = json!({
+        "m1": "1t", "f1": "10Hz", "zeta": "0.1%", "force": "100N", "band": "9Hz..11Hz", "mass": "1%", "limits": { "stroke": "2 mm" }
+    });
+    let desk = Desk::new();
+    let request = Request { out: Some(desk.path("out")), ..Request::new(&desk.path("out")) };
+    drop(good(design(&good(asked(tight).requirements()), &request, &Silent)));
+    let found = desk.read_json("out/design.json");
+    let mut study = desk.read_json("out/studies-ssvi.json");
+    let t0 = study["window"]["t0"].as_f64().expect("a time");
+    assert!(t0 > 15.0, "{t0}");
+    study["window"] = json!({ "t0": 10.0 * t0, "T": 10.0 * t0 + 5.0 });
+    let other = retune_study::read::from_text(&study.to_string(), "later").expect("a study");
+    let (own, later) = (largest(&found, 2, "E1max"), other.energy(&other.scene).expect("a value"));
+    assert!((own / later - 1.0).abs() < 5e-3 && own > 15.0, "{own} {later}");
+}
+
+/// The best damper with near walls far below resonance touches them just after rest, and never again: no force stands in its column.
+#[test]
+fn contract_walls_that_are_struck_after_rest_alone_are_said_to_be() {
+    let far =
+        json!({ "m1": "2t", "f1": "10Hz", "zeta": "5%", "force": "1kN", "band": "4Hz..6Hz", "mass": "5%" });
+    let desk = Desk::new();
+    let request = Request { out: Some(desk.path("out")), ..Request::new(&desk.path("out")) };
+    drop(good(design(&good(asked(far).requirements()), &request, &Silent)));
+    let answer = flat(&desk.read("out/answer.txt"));
+    assert!(answer.contains(", and strikes its walls only on the way from rest, with "), "{answer}");
+    assert!(!answer.contains("with 0 N") && !answer.contains("contact force"), "{answer}");
 }
 
 /// With walls that lose energy, where runs take several times as long, an answer takes seconds: of a certain number of evaluations,

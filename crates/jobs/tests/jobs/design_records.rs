@@ -114,6 +114,9 @@ fn exact_the_ssvi_nes_of_a_shock_has_what_its_study_finds() {
         flat(&answer).contains("a half sine of 20000 N for 0.1 s") && answer.contains("With the other sign"),
         "{answer}"
     );
+    // A damper that is worse than the TMD under the other sign is said to be.
+    let tmd = found["candidates"][1]["in_window"]["E1max"]["value"].as_f64().expect("a number");
+    assert_eq!(flat(&answer).contains("more than the"), other > tmd, "{other} {tmd}: {answer}");
 }
 
 #[test]

@@ -27,8 +27,7 @@ fn exact_restitution_of_the_undisturbed_collision() {
             ..free
         };
         // Over six decades of speed.
-        let numbers =
-            if number < 25 { Numbers { e: 0.02 + 0.97 * draw.unit(), ..numbers } } else { numbers };
+        let numbers = if number < 25 { Numbers { e: 0.02 + 0.97 * draw.unit(), ..numbers } } else { numbers };
         let numbers = Numbers { e_obstacle: (number % 2 == 1).then(|| 0.02 + 0.97 * draw.unit()), ..numbers };
         let speed = if number < 25 { draw.logarithmic(1e-5, 10.0) } else { speed };
         let system = numbers.coupled();
