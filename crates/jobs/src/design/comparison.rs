@@ -126,8 +126,8 @@ fn by(requirements: &Requirements, study: &Study, formula: Formula) -> Result<(F
     Ok((formula, tmd))
 }
 
-/// The study with a window that begins once the slowest transient of a scene with its walls open has decayed, where at its own t0 it matters: from
-/// rest a damper whose stroke or mass is kept small lets the structure swing up for long, and would be compared before it has.
+/// The study with a window that begins once the slowest transient of a scene with its walls open has decayed, if that matters at its own t0. With a
+/// damper whose stroke or mass is kept small the motion builds up from rest for hundreds of periods, and would be compared too early.
 fn settling(study: &Study, scene: &Scene) -> Result<Study, Error> {
     if (Study { scene: *scene, ..study.clone() }).transient().is_none() || scene.forcing.is_transient() {
         return Ok(study.clone());
@@ -136,7 +136,11 @@ fn settling(study: &Study, scene: &Scene) -> Result<Study, Error> {
     let settled = Span::settled(scene).map_or(f64::INFINITY, |span| span.t0.get());
     let t0 = settled.min(SETTLED * period);
     let window = Span { t0: NonNegative::new(t0)?, end: Positive::new(t0 + LASTS * period)? };
-    Ok(Study { window, ..study.clone() })
+    let mut study = Study { window, ..study.clone() };
+    if let Some(from) = study.optimize.as_mut().and_then(|optimize| optimize.limits.from.as_mut()) {
+        *from = window.t0; // of the same motion as the objective
+    }
+    Ok(study)
 }
 
 /// The SSVI NES that the ends of a search are, the best first, each with the value of the search: those that can be run and strike, if only

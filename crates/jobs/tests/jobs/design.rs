@@ -424,8 +424,8 @@ impl Observer for Told {
     }
 }
 
-/// A stroke that is kept small leaves a lightly damped structure swinging up for hundreds of periods: the damper with walls is compared once it has
-/// settled, not in periods 50 to 100, in which it would have 10.8 J.
+/// With a short stroke the motion of a lightly damped structure builds up for hundreds of periods: the damper with walls is compared once it has
+/// settled, not in periods 50 to 100, in which one would have 10.8 J.
 #[test]
 fn regress_a_damper_with_walls_is_compared_once_the_structure_has_settled() {
     let tight = json!({
