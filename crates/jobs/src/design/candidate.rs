@@ -1,9 +1,15 @@
 //! A damper that may be built, or none: what it has of each quantity over the whole band.
 
-use retune_model::{Damper, Forcing, Measure, PerMeasure, Scene, Source};
+use retune_model::{Damper, Forcing, Measure, NonNegative, PerMeasure, Positive, Scene, Source};
 use retune_optim::{Limit, Limits, Need, Unusable};
-use retune_study::Study;
+use retune_study::{Span, Study};
 use serde::Serialize;
+use std::f64::consts::TAU;
+
+/// Periods of the natural frequency that are waited for at most until a motion has settled: more would take minutes.
+const SETTLED: f64 = 1000.0;
+/// Those of which maxima are then taken.
+const LASTS: f64 = 50.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum What {
@@ -46,8 +52,9 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// Measures the scene of a study, with its damper or without.
+    /// Measures the scene of a study, with its damper or without, once it has settled.
     pub fn new(what: What, study: &Study) -> Result<Self, Unusable> {
+        let study = settling(study, &study.scene);
         let settings = study.solver.settings();
         let mut steady = study.goal().own_needs(&study.scene, &settings, &|| true)?;
         let found = study.goal().evaluate(&study.scene, &settings, f64::INFINITY)?;
@@ -65,12 +72,12 @@ impl Candidate {
         let best = steady.get(study.quantity()).value;
         Ok(Self {
             what,
-            study: study.clone(),
             goal: if best.is_finite() && best > 0.0 { best } else { found.value },
             feasible: is_damper && found.violation == 0.0,
             binding: binding.collect(),
             steady,
             from_rest: None,
+            study,
         })
     }
 
@@ -90,6 +97,7 @@ impl Candidate {
 
     /// The [goal](Self::goal) of the scene of a study, to the same bits, with which alone a search ends; none where it has no bound.
     pub fn goal_of(study: &Study) -> Option<f64> {
+        let study = settling(study, &study.scene);
         let needs = study.goal().own_needs(&study.scene, &study.solver.settings(), &|| true).ok()?;
         let Need { value, .. } = needs.get(study.quantity());
         (value.is_finite() && value > 0.0).then_some(value)
@@ -130,6 +138,25 @@ impl Candidate {
     pub fn strikes(&self) -> bool {
         self.most().get(Measure::ContactForce).value > 0.0
     }
+}
+
+/// The study with a window that begins once the slowest transient of a scene with its walls open has decayed, if that matters at its own t0. With a
+/// damper whose stroke or mass is kept small the motion builds up from rest for hundreds of periods, and would be measured too early.
+pub(super) fn settling(study: &Study, scene: &Scene) -> Study {
+    let mut study = study.clone();
+    if (Study { scene: *scene, ..study.clone() }).transient().is_none() || scene.forcing.is_transient() {
+        return study;
+    }
+    let period = TAU / scene.forcing.frequency.get();
+    let settled = Span::settled(scene).map_or(f64::INFINITY, |span| span.t0.get());
+    let t0 = settled.min(SETTLED * period);
+    if let (Ok(t0), Ok(end)) = (NonNegative::new(t0), Positive::new(t0 + LASTS * period)) {
+        study.window = Span { t0, end };
+        if let Some(from) = study.optimize.as_mut().and_then(|optimize| optimize.limits.from.as_mut()) {
+            *from = t0; // of the same motion as the objective
+        }
+    }
+    study
 }
 
 /// From where on a value from rest is told, and its peaks between samples matter: above its limit; of the stroke, which is drawn, everywhere.

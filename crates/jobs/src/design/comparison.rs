@@ -6,13 +6,12 @@ use super::words::{parameters, question, sized};
 use super::{Formula, ssvi, tmd};
 use crate::certify::{Certificate, Verdict, judge, judge_in_seconds};
 use crate::{Error, Observer};
-use retune_model::{Design, Measure, NonNegative, Parameter, Positive, Scene};
+use retune_model::{Design, Measure, Parameter, Scene};
 use retune_optim::{Limit, Need};
 use retune_store::Journal;
-use retune_study::{Rule, Setting, Span, Study};
+use retune_study::{Rule, Setting, Study};
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
-use std::f64::consts::TAU;
 
 /// A goal that is larger by less than this share is as good: the damper without walls is recommended.
 const SAME: f64 = 0.05;
@@ -23,10 +22,6 @@ const JUDGED: usize = 2;
 /// Halvings of the mass that would keep the limits, as a share of the structure's, and the largest that is looked at.
 const HALVINGS: usize = 12;
 const HEAVIEST: f64 = 0.3;
-/// Periods of the natural frequency that are waited for at most until a structure has settled: more would take minutes.
-const SETTLED: f64 = 1000.0;
-/// Those of which maxima are then taken.
-const LASTS: f64 = 50.0;
 
 /// What is compared, and what follows.
 #[derive(Debug)]
@@ -126,23 +121,6 @@ fn by(requirements: &Requirements, study: &Study, formula: Formula) -> Result<(F
     Ok((formula, tmd))
 }
 
-/// The study with a window that begins once the slowest transient of a scene with its walls open has decayed, if that matters at its own t0. With a
-/// damper whose stroke or mass is kept small the motion builds up from rest for hundreds of periods, and would be compared too early.
-fn settling(study: &Study, scene: &Scene) -> Result<Study, Error> {
-    if (Study { scene: *scene, ..study.clone() }).transient().is_none() || scene.forcing.is_transient() {
-        return Ok(study.clone());
-    }
-    let period = TAU / scene.forcing.frequency.get();
-    let settled = Span::settled(scene).map_or(f64::INFINITY, |span| span.t0.get());
-    let t0 = settled.min(SETTLED * period);
-    let window = Span { t0: NonNegative::new(t0)?, end: Positive::new(t0 + LASTS * period)? };
-    let mut study = Study { window, ..study.clone() };
-    if let Some(from) = study.optimize.as_mut().and_then(|optimize| optimize.limits.from.as_mut()) {
-        *from = window.t0; // of the same motion as the objective
-    }
-    Ok(study)
-}
-
 /// The SSVI NES that the ends of a search are, the best first, each with the value of the search: those that can be run and strike, if only
 /// just after rest. Others are TMDs. Each is measured when it is asked for.
 fn striking<'a>(
@@ -152,7 +130,6 @@ fn striking<'a>(
     let measured = |(value, end): &'a (f64, Vec<f64>)| -> Result<Option<(f64, Candidate)>, Error> {
         let place = |parameter: Parameter| Parameter::PAPER.iter().position(|own| *own == parameter);
         let study = with(study, |parameter| place(parameter).map_or(f64::NAN, |i| end[i]))?;
-        let study = settling(&study, &study.scene)?;
         let steady = Candidate::new(What::Ssvi, &study).ok();
         let all = steady.and_then(|of| if of.strikes() { Some(of) } else { of.with_start().ok() });
         Ok(all.filter(Candidate::strikes).map(|candidate| (*value, candidate)))
@@ -230,7 +207,6 @@ pub(super) fn compare(
     let (mut ssvi, mut tried, mut judged) = (None, None, None);
     if requirements.dampers != Dampers::Tmd {
         watch.result("SSVI NES, from known designs: some seconds (Ctrl-C leaves what stands above)")?;
-        let ssvi_study = &settling(ssvi_study, &tmd.study.scene)?;
         let found = ssvi::best(ssvi_study, &tmd, &[], (journal, "ssvi"), watch)?;
         tried = Some(found.tried);
         let mut all = striking(ssvi_study, &found);
@@ -319,7 +295,7 @@ fn costs(
             Constraint::K2 => ssvi.k2() > 0.99 * requirements.allowed(constraint),
         };
         let free_ssvi = if let Some(ssvi) = built.filter(binds) {
-            let study = settling(&free.ssvi()?, &free_tmd.study.scene)?;
+            let study = free.ssvi()?;
             let own = |parameter: Parameter| ssvi.damper().map_or(f64::NAN, |damper| parameter.get(&damper));
             let start = Parameter::PAPER.map(own);
             let stage = format!("ssvi without {}", constraint.name());

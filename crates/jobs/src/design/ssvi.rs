@@ -4,7 +4,7 @@
 //!
 //! It is no global search: `retune optimize` of the study that is written makes one. It takes seconds.
 
-use super::candidate::Candidate;
+use super::candidate::{Candidate, settling};
 use super::tmd::simplex;
 use super::words::sized;
 use crate::tune::descent::descend;
@@ -185,7 +185,7 @@ pub(super) fn best(
 ) -> Result<Ends, Error> {
     let search = study.search().map_err(Error::rule(study))?;
     debug_assert_eq!(search.variables, Parameter::PAPER);
-    let sought = sought(study);
+    let sought = sought(&settling(study, &tmd.study.scene));
     let objective = if is_lossy(&study.scene) {
         let loose = loose(&sought, &search, &search.variables, RTOL_WITH_LOSS);
         loose.within(PATIENCE_WITH_LOSS)

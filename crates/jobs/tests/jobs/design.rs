@@ -9,6 +9,7 @@ use retune_solver::{Method, Settings, Window, e1_max};
 use retune_study::{Refine, Study};
 use retune_testkit::desk::{Desk, flat};
 use retune_testkit::observers::{good, refused};
+use retune_testkit::verified::holds;
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -442,6 +443,7 @@ fn regress_a_damper_with_walls_is_compared_once_the_structure_has_settled() {
     let other = retune_study::read::from_text(&study.to_string(), "later").expect("a study");
     let (own, later) = (largest(&found, 2, "E1max"), other.energy(&other.scene).expect("a value"));
     assert!((own / later - 1.0).abs() < 5e-3 && own > 15.0, "{own} {later}");
+    holds(&desk, "out", 20);
 }
 
 /// The best damper with near walls far below resonance touches them just after rest, and never again: no force stands in its column.

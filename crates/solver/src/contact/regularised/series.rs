@@ -310,10 +310,10 @@ mod tests {
                 let from = Knot { t: 1.3, excitation: system.excitation(1.3), y, clock: [0.0, 0.5 * speed] };
                 let [mut series, mut steps] = [Work::default(); 2];
                 let budget = Budget::new(Pace::Steps, 100_000, Work::default(), [1.3, 2.3]);
-                let start = (from.clone(), equations.regularise(&y));
+                let start = (from, equations.regularise(&y));
                 let found = follow(
                     equations.clone(),
-                    start.clone(),
+                    start,
                     2.3,
                     (&system, 1e-11, budget),
                     &mut series,
