@@ -68,6 +68,15 @@ fn place(text: &str) -> Option<std::ops::Range<usize>> {
 }
 
 impl crate::Study {
+    /// The share of the slowest transient that is left at t0, where maxima in the window hold it and it matters: not where the whole run is asked for,
+    /// or the forcing has no frequency.
+    pub fn unsettled(&self) -> Option<f64> {
+        let t0 = self.window.t0.get();
+        let left = (-self.scene.slowest_decay() * t0).exp();
+        let windowed = self.objective().response == retune_optim::Response::Window;
+        (t0 > 0.0 && windowed && left >= MATTERS && !self.scene.forcing.is_transient()).then_some(left)
+    }
+
     /// A sentence on the transient that maxima in the window hold, if its share matters.
     pub fn transient(&self) -> Option<String> {
         if let Some(Course::Record(record)) = self.scene.forcing.history().map(|history| history.course)
@@ -77,13 +86,7 @@ impl crate::Study {
             let to = self.window.end.get();
             return Some(format!("the record ends at {end} s; from there to T = {to} s the motion is free"));
         }
-        let (rate, t0) = (self.scene.slowest_decay(), self.window.t0.get());
-        let left = (-rate * t0).exp();
-        let passes = self.scene.forcing.is_transient();
-        let windowed = self.objective().response == retune_optim::Response::Window;
-        if t0 == 0.0 || passes || !windowed || left < MATTERS {
-            return None; // the whole run is asked for, or what is long after its start
-        }
+        let (left, t0) = (self.unsettled()?, self.window.t0.get());
         let later = match Span::settled(&self.scene) {
             Ok(span) => format!("\"window\": \"settled\" begins at {:.4} s", span.t0.get()),
             Err(_) => "nothing damps it".to_owned(),

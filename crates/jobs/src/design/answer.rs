@@ -221,12 +221,8 @@ pub(super) fn findings(requirements: &Requirements, compared: &Comparison) -> Ve
         let further = if further { " `retune certify` looks at more starts, and at more force." } else { "" };
         lines.push(format!("How sure: the {name} is {words}.{further}"));
     }
-    if let Some(held) = compared
-        .ssvi
-        .as_ref()
-        .and_then(|ssvi| ssvi.study.transient())
-        .filter(|_| requirements.run().is_none())
-    {
+    let unsettled = compared.ssvi.as_ref().filter(|ssvi| ssvi.study.unsettled().is_some());
+    if let Some(held) = unsettled.and_then(|ssvi| ssvi.study.transient()) {
         lines.push(format!("Not settled: of the SSVI NES, {held}."));
     }
     if let (Some(other), Some(What::Ssvi)) = (compared.other_sign, compared.choice) {

@@ -8,8 +8,6 @@ use std::f64::consts::TAU;
 
 /// Periods of the natural frequency that are waited for at most until a motion has settled: more would take minutes.
 const SETTLED: f64 = 1000.0;
-/// Those of which maxima are then taken.
-const LASTS: f64 = 50.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum What {
@@ -140,17 +138,18 @@ impl Candidate {
     }
 }
 
-/// The study with a window that begins once the slowest transient of a scene with its walls open has decayed, if that matters at its own t0. With a
-/// damper whose stroke or mass is kept small the motion builds up from rest for hundreds of periods, and would be measured too early.
+/// The study with its window, as long as it is, from when the slowest transient of a scene with its walls open has decayed, if that matters at its
+/// own t0. With a damper whose stroke or mass is kept small the motion builds up from rest for hundreds of periods, and would be measured too early.
 pub(super) fn settling(study: &Study, scene: &Scene) -> Study {
     let mut study = study.clone();
-    if (Study { scene: *scene, ..study.clone() }).transient().is_none() || scene.forcing.is_transient() {
+    if (Study { scene: *scene, ..study.clone() }).unsettled().is_none() {
         return study;
     }
+    let length = study.window.end.get() - study.window.t0.get();
     let period = TAU / scene.forcing.frequency.get();
     let settled = Span::settled(scene).map_or(f64::INFINITY, |span| span.t0.get());
     let t0 = settled.min(SETTLED * period);
-    if let (Ok(t0), Ok(end)) = (NonNegative::new(t0), Positive::new(t0 + LASTS * period)) {
+    if let (Ok(t0), Ok(end)) = (NonNegative::new(t0), Positive::new(t0 + length)) {
         study.window = Span { t0, end };
         if let Some(from) = study.optimize.as_mut().and_then(|optimize| optimize.limits.from.as_mut()) {
             *from = t0; // of the same motion as the objective

@@ -17,6 +17,7 @@ fn desk() -> Desk {
 }
 
 fn options() -> Options {
+    // Farther on doublings follow each other, and take ten times as long.
     let [from, to] = ["5.2", "5.266"].map(|end| Some(end.to_owned()));
     Options { from, to, samples: 5, starts: 2, ..Options::default() }
 }

@@ -1,16 +1,13 @@
 //! `design` under shocks and records.
 
-use retune_jobs::design::{Requirements, Specification, design};
-use retune_jobs::{Error, Request, Silent};
+use crate::{asked, make};
+use retune_jobs::design::Requirements;
+use retune_jobs::{Error, Silent};
 use retune_model::{Design, Parameter};
 use retune_solver::Method;
 use retune_testkit::desk::{Desk, flat};
 use retune_testkit::observers::{good, refused};
 use serde_json::{Value, json};
-
-fn asked(specification: Value) -> Specification {
-    serde_json::from_value(specification).expect("specification")
-}
 
 /// A building in a record with a file beside, and the studies of its dampers.
 fn in_a_record(more: &[(&str, Value)]) -> (Desk, Result<Requirements, Error>) {
@@ -38,8 +35,7 @@ fn reference_the_tmd_of_a_record_is_the_best_of_runs_by_another_method() {
         let (desk, requirements) =
             in_a_record(&[("goal", json!(goal)), ("damper", json!("tmd")), ("after", json!(after))]);
         let requirements = good(requirements);
-        let request = Request { out: Some(desk.path("out")), ..Request::new(&desk.path("out")) };
-        drop(good(design(&requirements, &request, &Silent)));
+        make(&desk, &requirements, &Silent);
         let found = desk.read_json("out/design.json");
         let tmd = &found["candidates"][1];
         let own = tmd["in_window"][goal]["value"].as_f64().expect("a number");
@@ -92,8 +88,7 @@ fn exact_the_ssvi_nes_of_a_shock_has_what_its_study_finds() {
         })
     };
     let requirements = good(asked(of("20kN")).requirements());
-    let request = Request { out: Some(desk.path("out")), ..Request::new(&desk.path("out")) };
-    drop(good(design(&requirements, &request, &Silent)));
+    make(&desk, &requirements, &Silent);
     let found = desk.read_json("out/design.json");
     assert_eq!(found["build"], "SSVI NES", "{found}");
     let ssvi = &found["candidates"][2];

@@ -6,6 +6,7 @@ mod certify;
 mod damaged;
 mod describe;
 mod design;
+mod design_answers;
 mod design_records;
 mod evaluate;
 mod fronts;
@@ -33,13 +34,15 @@ mod verify;
 mod verify_fronts;
 mod walls;
 
-use retune_jobs::Done;
+use retune_jobs::design::{Requirements, Specification, design};
 use retune_jobs::tune::{Optimum, tune};
+use retune_jobs::{Done, Observer};
 use retune_jobs::{Request, Silent};
 use retune_store::Begin;
 use retune_study::Study;
 use retune_testkit::desk::Desk;
 use retune_testkit::observers::good;
+use serde_json::Value;
 
 /// A request for the results of a study of the desk, in a directory of it.
 fn request(desk: &Desk, study: &str, out: &str) -> Request {
@@ -74,6 +77,17 @@ fn found<T>(done: Done<T>) -> T {
 #[track_caller]
 fn search(desk: &Desk, study: &str, out: &str) -> Optimum {
     found(good(tune(&request(desk, study, out), &Silent)))
+}
+
+/// What is asked of `design`.
+fn asked(specification: Value) -> Specification {
+    serde_json::from_value(specification).expect("specification")
+}
+
+/// Makes a design into `out` of a desk.
+#[track_caller]
+fn make(desk: &Desk, requirements: &Requirements, watch: &dyn Observer) {
+    drop(good(design(requirements, &request(desk, "out", "out"), watch)));
 }
 
 /// Reads a study of the desk.
