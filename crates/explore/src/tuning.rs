@@ -6,7 +6,7 @@ use crate::refused::Refused;
 use crate::start::Start;
 use retune_jobs::tune::{log, objective::searched};
 use retune_model::Parameter;
-use retune_optim::{DesignObjective, Objective, Response, Scale, Stiffnesses, Stop, minimize, value_of};
+use retune_optim::{DesignObjective, Objective, Response, Scale, Stop, minimize, value_of};
 use retune_study::{Search, Study, rounded};
 use std::ops::ControlFlow;
 
@@ -120,10 +120,7 @@ fn value(
 /// Runs behind a value, without those that locate the maxima of a band.
 fn runs(objective: &Objective) -> usize {
     let term = |(_, term): (f64, &Objective)| {
-        let k1 = term.k1.as_ref().map_or(1, |k1| match k1 {
-            Stiffnesses::Set(set) => set.len(),
-            Stiffnesses::Range(range) => range.samples,
-        });
+        let k1 = term.k1.as_ref().map_or(1, |k1| k1.samples().len());
         let omega = term.omega.map_or(1, |band| band.samples);
         let members = term.ensemble.map_or(1, |ensemble| ensemble.members as usize);
         let motions = if term.response == Response::Motions { 100 } else { 1 };

@@ -14,6 +14,7 @@ mod requirements;
 mod ssvi;
 mod table;
 mod tmd;
+mod trust;
 mod typed;
 mod words;
 

@@ -58,10 +58,11 @@ pub(super) fn rows(requirements: &Requirements, compared: &Comparison) -> Vec<Ve
         .map(row)
         .collect();
     if let Some(error) = requirements.k1_error {
-        for (place, sign) in ["-", "+"].into_iter().enumerate() {
-            let first = format!("{}, k1 {sign}{}", compared.goal.name(), percent(error));
+        let off = ["-", "+"].map(|sign| format!("{sign}{}", percent(error)));
+        for (place, k1) in std::iter::once("as given".to_owned()).chain(off).enumerate() {
+            let first = format!("{}, k1 {k1}", compared.goal.name());
             let values = compared.detuned.iter().map(|values| sized(values[place], compared.goal.unit()));
-            rows.push([first, String::new()].into_iter().chain(values).collect());
+            rows.push(std::iter::once(first).chain(values).collect());
         }
     }
     rows
@@ -147,7 +148,7 @@ pub(super) fn build(requirements: &Requirements, compared: &Comparison) -> Vec<S
             let (has, as_much) = (said(compared.tmd.goal), as_much(compared.tmd.goal / chosen.goal));
             format!("; the best TMD has {has}, {as_much}")
         }
-        _ => "; no TMD of this mass keeps the limits".to_owned(),
+        _ => "; no TMD of this mass was found that keeps the limits".to_owned(),
     };
     let mut lines = vec![
         format!("Build the {}: {}.", chosen.what.name(), parameters(chosen)),
@@ -205,7 +206,7 @@ fn infeasible(requirements: &Requirements, compared: &Comparison) -> Vec<String>
             share(mass),
             share(mass * 1.01).replace(' ', "")
         ),
-        None => "  Nor does a TMD of up to 30 % of the structure: loosen a limit.".to_owned(),
+        None => "  Nor was a TMD of up to 30 % of the structure found that does: loosen a limit.".to_owned(),
     });
     lines
 }
@@ -280,7 +281,9 @@ fn costs(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
             words.push(cost(&compared.tmd, &of.tmd));
         } else if of.tmd.feasible {
             let (name, has) = (goal.name(), said(&of.tmd));
-            words.push(format!("is one that no TMD of this mass keeps: without it {name} is {has}"));
+            words.push(format!(
+                "is one that no TMD of this mass was found to keep: without it {name} is {has}"
+            ));
         }
         if let Some(own) = compared.chosen().filter(|chosen| chosen.what == What::Ssvi) {
             let stays = || "the SSVI NES stays below it".to_owned();

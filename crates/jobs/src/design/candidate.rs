@@ -1,13 +1,19 @@
 //! A damper that may be built, or none: what it has of each quantity over the whole band.
 
-use retune_model::{Damper, Forcing, Measure, NonNegative, PerMeasure, Positive, Scene, Source};
-use retune_optim::{Limit, Limits, Need, Unusable};
-use retune_study::{Span, Study};
+use retune_model::{Damper, Forcing, Measure, NonNegative, Parameter, PerMeasure, Positive, Scene, Source};
+use retune_optim::{Goal, Limit, Limits, Need, Stiffnesses, Unusable};
+use retune_study::{Setting, Span, Study};
 use serde::Serialize;
 use std::f64::consts::TAU;
 
 /// Periods of the natural frequency that are waited for at most until a motion has settled: more would take minutes.
 const SETTLED: f64 = 1000.0;
+/// A motion whose goal grows by more than this share from a window to one that is twice as late has not settled.
+const GROWTH: f64 = 0.01;
+/// A candidate is measured on so many times the samples of a search.
+const MORE: usize = 4;
+/// A search in time looks at every fourth of the stiffnesses that there may be, the ends among them.
+const SPARSE: usize = 4;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum What {
@@ -52,11 +58,11 @@ pub struct Candidate {
 impl Candidate {
     /// Measures the scene of a study, with its damper or without, once it has settled.
     pub fn new(what: What, study: &Study) -> Result<Self, Unusable> {
-        let study = settling(study, &study.scene);
-        let settings = study.solver.settings();
-        let mut steady = study.goal().own_needs(&study.scene, &settings, &|| true)?;
-        let found = study.goal().evaluate(&study.scene, &settings, f64::INFINITY)?;
-        let limits = study.goal().limits;
+        let study = settled(study);
+        let (settings, goal) = (study.solver.settings(), on_many_samples(&study));
+        let mut steady = goal.own_needs(&study.scene, &settings, &|| true)?;
+        let found = goal.evaluate(&study.scene, &settings, f64::INFINITY)?;
+        let limits = goal.limits;
         let is_damper = study.scene.damper.is_some();
         let binding =
             limits.active(&found.reached).into_iter().map(|limit| (limit, found.reached.get(limit)));
@@ -82,7 +88,7 @@ impl Candidate {
     /// The same with its largest values from rest on.
     pub fn with_start(self) -> Result<Self, Unusable> {
         let Study { scene, solver, .. } = &self.study;
-        let goal = self.study.goal();
+        let goal = on_many_samples(&self.study);
         let asked = (&self.steady, told(&goal.limits));
         let from_rest = goal.needs_from_rest(scene, &solver.settings(), asked, &|| true)?;
         Ok(Self { from_rest: Some(from_rest), ..self })
@@ -95,10 +101,24 @@ impl Candidate {
 
     /// The [goal](Self::goal) of the scene of a study, to the same bits, with which alone a search ends; none where it has no bound.
     pub fn goal_of(study: &Study) -> Option<f64> {
-        let study = settling(study, &study.scene);
-        let needs = study.goal().own_needs(&study.scene, &study.solver.settings(), &|| true).ok()?;
+        let study = settled(study);
+        let needs =
+            on_many_samples(&study).own_needs(&study.scene, &study.solver.settings(), &|| true).ok()?;
         let Need { value, .. } = needs.get(study.quantity());
         (value.is_finite() && value > 0.0).then_some(value)
+    }
+
+    /// The goal with k1 of the structure off by each of some shares; NaN where it has no bound.
+    pub fn with_k1_off<const N: usize>(&self, shares: [f64; N]) -> [f64; N] {
+        let mut study = self.study.clone();
+        if let Some(optimize) = &mut study.optimize {
+            optimize.objective.k1 = None;
+        }
+        let k1 = study.scene.primary.stiffness.get();
+        shares.map(|share| {
+            let scene = study.scene_with(&[Setting::new(Parameter::K1, k1 * (1.0 + share))]).ok();
+            scene.and_then(|scene| study.energy(&scene)).unwrap_or(f64::NAN)
+        })
     }
 
     /// Whether it stands under a shock or a record, so that no value has a frequency.
@@ -140,20 +160,72 @@ impl Candidate {
 
 /// The study with its window, as long as it is, from when the slowest transient of a scene with its walls open has decayed, if that matters at its
 /// own t0. With a damper whose stroke or mass is kept small the motion builds up from rest for hundreds of periods, and would be measured too early.
-pub(super) fn settling(study: &Study, scene: &Scene) -> Study {
-    let mut study = study.clone();
-    if (Study { scene: *scene, ..study.clone() }).unsettled().is_none() {
-        return study;
+/// At most so many periods of the force are waited for.
+pub(super) fn settling(study: &Study, scene: &Scene, most: f64) -> Study {
+    if !settles_late(study, scene) {
+        return study.clone();
     }
-    let length = study.window.end.get() - study.window.t0.get();
     let period = TAU / scene.forcing.frequency.get();
     let settled = Span::settled(scene).map_or(f64::INFINITY, |span| span.t0.get());
-    let t0 = settled.min(SETTLED * period);
+    from(study, settled.min(most * period))
+}
+
+/// The study by which a candidate is measured. A damper that strikes its walls may damp less than with its walls open: where the structure alone
+/// decays slowly, the window is moved until the goal in it no longer grows.
+fn settled(study: &Study) -> Study {
+    let mut own = settling(study, &study.scene, SETTLED);
+    let bare = Scene { damper: None, ..study.scene };
+    if study.scene.damper.is_none_or(|damper| damper.contact.is_none()) || !settles_late(&own, &bare) {
+        return own;
+    }
+    let mut value = own.energy(&own.scene);
+    loop {
+        let later = from(&own, 2.0 * own.window.t0.get());
+        let next = later.energy(&later.scene);
+        let grows = value.zip(next).is_some_and(|(value, next)| next > (1.0 + GROWTH) * value);
+        if !grows || later.window.t0.get() > SETTLED * TAU / study.scene.forcing.frequency.get() {
+            return own;
+        }
+        (own, value) = (later, next);
+    }
+}
+
+/// A study whose window, as long as it is, and limits begin at t0, s.
+fn from(study: &Study, t0: f64) -> Study {
+    let mut study = study.clone();
+    let length = study.window.end.get() - study.window.t0.get();
     if let (Ok(t0), Ok(end)) = (NonNegative::new(t0), Positive::new(t0 + length)) {
         study.window = Span { t0, end };
         if let Some(from) = study.optimize.as_mut().and_then(|optimize| optimize.limits.from.as_mut()) {
             *from = t0; // of the same motion as the objective
         }
+    }
+    study
+}
+
+/// Whether maxima in the window of a study hold a transient of a scene.
+pub(super) fn settles_late(study: &Study, scene: &Scene) -> bool {
+    (Study { scene: *scene, ..study.clone() }).unsettled().is_some()
+}
+
+/// The goal by which a candidate is measured: on more samples of the band than a search takes, since a motion that is there in a part of it
+/// alone is missed by few. Several stiffnesses, at which resonances lie elsewhere, are samples enough.
+fn on_many_samples(study: &Study) -> Goal {
+    let mut goal = study.goal();
+    goal.objective.for_each_term(&mut |term| {
+        if let (Some(band), None) = (&mut term.omega, &term.k1) {
+            band.samples *= MORE;
+        }
+    });
+    goal
+}
+
+/// The study by which a search in time goes: with k1 at few of the values that it may have.
+pub(super) fn at_few_stiffnesses(study: &Study) -> Study {
+    let mut study = study.clone();
+    let k1 = study.optimize.as_mut().and_then(|optimize| optimize.objective.k1.as_mut());
+    if let Some(Stiffnesses::Set(all)) = k1 {
+        *all = all.iter().step_by(SPARSE).copied().collect();
     }
     study
 }

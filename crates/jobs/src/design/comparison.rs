@@ -2,23 +2,20 @@
 
 use super::candidate::{Candidate, What};
 use super::requirements::{Constraint, Dampers, Requirements};
+use super::trust::{certified, doubt, first_of, striking, trusted, with, worst_nearby};
 use super::words::{parameters, question, sized};
 use super::{Formula, ssvi, tmd};
-use crate::certify::{Certificate, Verdict, judge, judge_in_seconds};
+use crate::certify::Certificate;
 use crate::{Error, Observer};
-use retune_model::{Design, Measure, Parameter, Scene};
+use retune_model::{Measure, Parameter, Scene};
 use retune_optim::{Limit, Need};
 use retune_store::Journal;
-use retune_study::{Rule, Setting, Study};
+use retune_study::Study;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
 
 /// A goal that is larger by less than this share is as good: the damper without walls is recommended.
 const SAME: f64 = 0.05;
-/// Designs whose goal is larger by less than this share are nearly as good: of them the best certificate counts.
-const NEARLY: f64 = 0.15;
-/// At most so many are certified: a certificate with motions from other starts takes seconds.
-const JUDGED: usize = 2;
 /// Halvings of the mass that would keep the limits, as a share of the structure's, and the largest that is looked at.
 const HALVINGS: usize = 12;
 const HEAVIEST: f64 = 0.3;
@@ -44,8 +41,8 @@ pub struct Comparison {
     pub other_sign: Option<f64>,
     /// What each limit costs.
     pub costs: Vec<Cost>,
-    /// The goal with k1 off by minus and plus its error, of each damper in the order of [`Self::dampers`].
-    pub detuned: Vec<[f64; 2]>,
+    /// The goal with k1 as given, off by minus and by plus its error, of each candidate in the order of [`Self::all`].
+    pub detuned: Vec<[f64; 3]>,
     /// Mass of the lightest TMD that would keep the limits, kg, where that of the mass that is given does not.
     pub lightest: Option<f64>,
     /// How sure the one to build is.
@@ -98,13 +95,6 @@ impl Comparison {
     }
 }
 
-fn with(study: &Study, value: impl Fn(Parameter) -> f64) -> Result<Study, Error> {
-    let no_damper = || Error::Rule { name: study.name().to_owned(), rule: Rule::NoDamper };
-    let design = Design::new(value).map_err(|(_, source)| Error::from(source))?;
-    let scene = study.scene_at(&design).ok_or_else(no_damper)?;
-    Ok(Study { scene, ..study.clone() })
-}
-
 /// The TMD with this spring and dashpot.
 fn tmd_of(study: &Study, [k2, c2]: [f64; 2]) -> Result<Candidate, Error> {
     let study = with(study, |parameter| match parameter {
@@ -119,68 +109,6 @@ fn by(requirements: &Requirements, study: &Study, formula: Formula) -> Result<(F
     let mut tmd = tmd_of(study, [formula.k2, formula.c2])?;
     tmd.feasible &= requirements.k2_max.is_none_or(|most| formula.k2 <= most);
     Ok((formula, tmd))
-}
-
-/// The SSVI NES that the ends of a search are, the best first, each with the value of the search: those that can be run and strike, if only
-/// just after rest. Others are TMDs. Each is measured when it is asked for.
-fn striking<'a>(
-    study: &'a Study,
-    found: &'a ssvi::Ends,
-) -> impl Iterator<Item = Result<(f64, Candidate), Error>> + 'a {
-    let measured = |(value, end): &'a (f64, Vec<f64>)| -> Result<Option<(f64, Candidate)>, Error> {
-        let place = |parameter: Parameter| Parameter::PAPER.iter().position(|own| *own == parameter);
-        let study = with(study, |parameter| place(parameter).map_or(f64::NAN, |i| end[i]))?;
-        let steady = Candidate::new(What::Ssvi, &study).ok();
-        let all = steady.and_then(|of| if of.strikes() { Some(of) } else { of.with_start().ok() });
-        Ok(all.filter(Candidate::strikes).map(|candidate| (*value, candidate)))
-    };
-    found.ends.iter().filter_map(move |end| measured(end).transpose())
-}
-
-/// How much a damper may be trusted: 0 of the best verdict.
-fn doubt(certificate: &Certificate) -> u8 {
-    match certificate.judged.verdict {
-        Some(Verdict::Robust) => 0,
-        Some(Verdict::Edge) => 1,
-        Some(Verdict::FromRest) => 2,
-        Some(Verdict::Sensitive) => 3,
-        Some(Verdict::SingleChaoticRealisation) | None => 4,
-    }
-}
-
-/// The worst within 1 % of each parameter, and of 95 in 100 neighbours: of what a shock leaves it may be a multiple, and still a small part of
-/// what it is with another damper.
-fn worst_nearby(certificate: &Certificate) -> f64 {
-    let measured = &certificate.measured;
-    let worst = measured.sensitivity.iter().map(|of| of.worst);
-    worst.fold(measured.neighbourhood.high, f64::max)
-}
-
-/// The certificate of a candidate, as far as seconds allow.
-fn certified(study: &Study) -> Result<Certificate, Error> {
-    if ssvi::is_lossy(&study.scene) { judge_in_seconds(study) } else { judge(study) }
-}
-
-/// Of designs that are nearly as good as the first the one with the best certificate; one that is certain ends the search.
-fn trusted(
-    first: (f64, Candidate),
-    others: impl Iterator<Item = Result<(f64, Candidate), Error>>,
-) -> Result<(Candidate, Certificate), Error> {
-    let (least, first) = first;
-    let certificate = certified(&first.study)?;
-    let mut best = (first, certificate);
-    let mut others = others.take(JUDGED - 1);
-    while doubt(&best.1) > 0
-        && let Some((value, candidate)) = others.next().transpose()?
-        && candidate.feasible
-        && value <= (1.0 + NEARLY) * least
-    {
-        let certificate = certified(&candidate.study)?;
-        if doubt(&certificate) < doubt(&best.1) {
-            best = (candidate, certificate);
-        }
-    }
-    Ok(best)
 }
 
 /// Makes the whole comparison; what is known is told at once.
@@ -211,7 +139,7 @@ pub(super) fn compare(
         tried = Some(found.tried);
         let mut all = striking(ssvi_study, &found);
         let rival = requirements.dampers == Dampers::Ssvi || !tmd.feasible;
-        let best = all.next().transpose()?;
+        let best = first_of(&mut all)?;
         let least = best.as_ref().map(|(_, candidate)| candidate.goal);
         (ssvi, judged) = match best {
             Some(best) if best.1.feasible && (rival || tmd.goal > (1.0 + SAME) * best.1.goal) => {
@@ -231,9 +159,9 @@ pub(super) fn compare(
     let choice = choice(requirements, &tmd, ssvi.as_ref(), is_trusted);
     let built = ssvi.as_ref().filter(|_| choice == Some(What::Ssvi));
     let costs = costs(requirements, (&tmd, built), journal, watch)?;
-    let dampers = [Some(&tmd), ssvi.as_ref()];
+    let all = [Some(&none), Some(&tmd), ssvi.as_ref()];
     let detuned = match requirements.k1_error {
-        Some(error) => dampers.iter().flatten().map(|damper| off(damper, error)).collect::<Result<_, _>>()?,
+        Some(error) => all.iter().flatten().map(|of| of.with_k1_off([0.0, -error, error])).collect(),
         None => Vec::new(),
     };
     let lightest = if tmd.feasible { None } else { lightest(requirements)? };
@@ -300,23 +228,13 @@ fn costs(
             let start = Parameter::PAPER.map(own);
             let stage = format!("ssvi without {}", constraint.name());
             let found = ssvi::best(&study, tmd, &[start.to_vec()], (journal, &stage), watch)?;
-            striking(&study, &found).next().transpose()?.map(|(_, candidate)| candidate)
+            first_of(&mut striking(&study, &found))?.map(|(_, candidate)| candidate)
         } else {
             None
         };
         Ok(Cost { constraint, tmd: free_tmd, ssvi: free_ssvi })
     };
     requirements.constraints().into_iter().map(cost).collect()
-}
-
-/// The goal of a damper with k1 off by minus and plus a share.
-fn off(damper: &Candidate, error: f64) -> Result<[f64; 2], Error> {
-    let k1 = damper.study.scene.primary.stiffness.get();
-    let at = |share: f64| -> Result<f64, Error> {
-        let scene = damper.study.scene_with(&[Setting::new(Parameter::K1, k1 * (1.0 + share))])?;
-        Ok(damper.study.energy(&scene).unwrap_or(f64::NAN))
-    };
-    Ok([at(-error)?, at(error)?])
 }
 
 /// Mass of the lightest TMD that keeps the limits, kg; none up to [`HEAVIEST`].
@@ -342,11 +260,14 @@ impl Serialize for Candidate {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let largest = |of: &dyn Fn(Measure) -> Need| -> Map<String, Value> {
             let one = |measure: Measure| {
-                let Need { value, omega, .. } = of(measure);
-                let said = match self.is_transient() {
-                    true => json!({ "value": value }),
-                    false => json!({ "value": value, "omega": omega }),
-                };
+                let Need { value, omega, k1, .. } = of(measure);
+                let mut said = json!({ "value": value });
+                if !self.is_transient() {
+                    said["omega"] = json!(omega);
+                }
+                if self.study.objective().k1.is_some() {
+                    said["k1"] = json!(k1);
+                }
                 (measure.name().to_owned(), said)
             };
             Measure::ALL.into_iter().map(one).collect()

@@ -9,7 +9,7 @@ use super::words::{asked, parameters, radians, sized, tuning};
 use crate::pages::made_by;
 use crate::tune::band::at;
 use rayon::prelude::*;
-use retune_model::{Bare, Coupled, Measure, PerMeasure, unit};
+use retune_model::{Bare, Coupled, Measure, NonNegative, PerMeasure, unit};
 use retune_optim::Limit;
 use retune_report::colour::{BLACK, BLUE, GREEN, GREY, VERMILION};
 use retune_report::document::{Block, Document, Section};
@@ -118,7 +118,8 @@ fn over(requirements: &Requirements, compared: &Comparison) -> Section {
     };
     let limited = Measure::ALL.into_iter().any(|measure| requirements.is_limited(measure));
     let grey = if limited { " Grey: what a limit forbids." } else { "" };
-    let words = format!("Each quantity against frequency, once the motion is steady.{grey}");
+    let off = requirements.k1_error.map_or("", |_| ", the largest for every k1 that there may be");
+    let words = format!("Each quantity against frequency, once the motion is steady{off}.{grey}");
     let figure = Block::figure("band.svg", curves(requirements, compared, band), words);
     ("band", "Over the band", vec![figure])
 }
@@ -138,8 +139,8 @@ const fn line(what: What) -> Stroke {
 /// A frequency, rad/s, and the quantities there, in SI units.
 type Curve = Vec<(f64, PerMeasure<f64>)>;
 
-/// Every quantity of a candidate at frequencies of the band (rad/s), those of its largest values among them, once its motion is steady; NaN
-/// where a run fails.
+/// Every quantity of a candidate at frequencies of the band (rad/s), those of its largest values among them, once its motion is steady; the
+/// largest for every k1 that there may be. NaN where a run fails.
 fn curve(of: &Candidate, [from, to]: [f64; 2]) -> Curve {
     let study = &of.study;
     let closed = study.goal().objective.is_steady();
@@ -149,23 +150,31 @@ fn curve(of: &Candidate, [from, to]: [f64; 2]) -> Curve {
     let mut all: Vec<f64> = even.chain(peaks.filter(|omega| (from..=to).contains(omega))).collect();
     all.sort_by(f64::total_cmp);
     all.dedup();
-    let value = |omega: f64| {
-        let none = PerMeasure::all(f64::NAN);
-        let Some(scene) = at(omega, study.scene) else { return (omega, none) };
+    let own = || vec![study.scene.primary.stiffness.get()];
+    let stiffnesses = study.objective().k1.map_or_else(own, |k1| k1.samples());
+    let none = PerMeasure::all(f64::NAN);
+    let value = |omega: f64, k1: f64| {
+        let Some(mut scene) = at(omega, study.scene) else { return none };
+        let Ok(stiffness) = NonNegative::new(k1) else { return none };
+        scene.primary.stiffness = stiffness;
         if closed {
             let bare = Bare::new(&scene.primary, &scene.forcing);
             let steady = scene.damper.map_or_else(
                 || bare.steady(omega),
                 |damper| Coupled::new(&scene.primary, &scene.forcing, &damper).steady(omega),
             );
-            return (omega, PerMeasure(Measure::OF_RUN.map(|measure| steady.largest(&bare, omega, measure))));
+            return PerMeasure(Measure::OF_RUN.map(|measure| steady.largest(&bare, omega, measure)));
         }
         let window = study.window.window();
         let also = Some(Also { measures: PerMeasure::EVERY, from: window.from });
         let run = extremes(&scene, window, &study.solver.settings(), Ask { also, ..Ask::default() });
-        (omega, run.map_or(none, |run| run.reached))
+        run.map_or(none, |run| run.reached)
     };
-    all.into_par_iter().map(value).collect()
+    let most = |omega: f64| {
+        let values = stiffnesses.iter().map(|k1| value(omega, *k1));
+        (omega, values.reduce(PerMeasure::max).unwrap_or(none))
+    };
+    all.into_par_iter().map(most).collect()
 }
 
 fn curves(requirements: &Requirements, compared: &Comparison, band: [f64; 2]) -> Drawing {

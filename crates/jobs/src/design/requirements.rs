@@ -9,7 +9,7 @@ use retune_model::{
     Bare, Forcing, Loss, Measure, NonNegative, PerMeasure, PoissonRatio, Positive, Primary, Restitution,
     Scene, Surfaces, den_hartog,
 };
-use retune_optim::{Limit, Limits};
+use retune_optim::{Band, Limit, Limits};
 use retune_solver::{Also, Ask, Settings, Window, extremes};
 use retune_study::Study;
 use retune_study::read::from_text;
@@ -39,7 +39,7 @@ pub struct Requirements {
     pub limits: Limits,
     /// Largest stiffness of the damper's spring, N/m.
     pub k2_max: Option<f64>,
-    /// Share by which k1 may be off.
+    /// Share by which k1 may be off: largest values are those over all k1 within it, and limits hold for them.
     pub k1_error: Option<f64>,
     /// The dampers that are compared.
     pub dampers: Dampers,
@@ -120,6 +120,10 @@ impl Constraint {
 /// Periods of the natural frequency before a run of an SSVI NES counts, and all of them.
 const PASSED: f64 = 50.0;
 const PERIODS: f64 = 100.0;
+/// Stiffnesses of a structure whose k1 may be off; of a TMD in closed form the largest value is searched between them, too.
+const STIFFNESSES: usize = 17;
+/// Largest dashpot of a TMD, in those of Den Hartog's: it all but holds the mass to the structure, so that its stroke is small.
+const HELD: f64 = 1e4;
 /// Damping that an undamped structure counts as when gaps and tolerances are scaled.
 const LEAST_DAMPING: f64 = 0.01;
 
@@ -222,7 +226,7 @@ impl Requirements {
         let optimize = json!({
             "vary": ["k2", "c2"],
             "objective": self.objective(true),
-            "bounds": { "k2": [0, most], "c2": [0, 200.0 * c2] },
+            "bounds": { "k2": [0, most], "c2": [0, HELD * c2] },
             "limits": kept.into_iter().map(|limit| (limit.name().to_owned(), json!(limits.get(limit)))).collect::<serde_json::Map<_, _>>(),
             "surf": { "k2": axis(0.05 * k2.min(most), (4.0 * k2).min(most)), "c2": axis(0.05 * c2, 20.0 * c2) },
             "refine": { "starts": 3, "scaled": true, "TolX": 1e-10, "TolFun": 1e-12 * size }
@@ -261,9 +265,17 @@ impl Requirements {
         self.study("ssvi", damper, optimize)
     }
 
-    /// The goal over the band, or in the run under a shock or a record.
+    /// The goal over the band, or in the run under a shock or a record; for every k1 that there may be.
     fn objective(&self, steady: bool) -> Value {
         let mut objective = json!({ "quantity": self.goal });
+        if let Some(error) = self.k1_error {
+            let [from, to] = [1.0 - error, 1.0 + error].map(|share| share * self.k1);
+            let band = Band { from, to, samples: STIFFNESSES };
+            objective["k1"] = match steady && self.driving.band().is_some() {
+                true => json!({ "range": { "from": from, "to": to, "samples": STIFFNESSES } }),
+                false => json!({ "set": (0..STIFFNESSES).map(|i| band.at(i)).collect::<Vec<_>>() }),
+            };
+        }
         if let Some([from, to]) = self.driving.band() {
             objective["omega"] = json!({ "from": from, "to": to, "samples": 31 });
             if steady {

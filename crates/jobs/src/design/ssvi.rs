@@ -4,7 +4,7 @@
 //!
 //! It is no global search: `retune optimize` of the study that is written makes one. It takes seconds.
 
-use super::candidate::{Candidate, settling};
+use super::candidate::{Candidate, at_few_stiffnesses, settles_late, settling};
 use super::tmd::simplex;
 use super::words::sized;
 use crate::tune::descent::descend;
@@ -35,16 +35,19 @@ const DASHPOTS: [f64; 3] = [0.6, 1.0, 1.7];
 const GAPS: [f64; 3] = [0.4, 1.0, 2.5];
 /// A design with this many times the value of the TMD is not worth its runs.
 const WORTH: f64 = 4.0;
+/// A known design that breaks limits by more than these shares of them in all is too far from any that keeps them: a descent from there takes minutes.
+const FAR: f64 = 2.0;
 /// Descents: from the best of each of so many families of designs, those that came nearest.
 const DESCENTS: usize = 4;
 /// Most evaluations of each, so that the answer takes seconds on every machine and the same bytes on each: most need fewer than 60. Runs
 /// whose contacts lose energy take several times as long.
 const PATIENCE: u64 = 150;
-const PATIENCE_WITH_LOSS: u64 = 60;
-/// Tolerance of runs there, where a gain of 1e-5 is wanted of a step, and samples of the band that a search looks at, with the peaks between
-/// them: what it comes to is measured on all samples of the study, at its tolerance.
-const RTOL_WITH_LOSS: f64 = 1e-7;
-const SAMPLES_WITH_LOSS: usize = 16;
+const PATIENCE_WHERE_SLOW: u64 = 60;
+/// Tolerance of slow runs, where a gain of 1e-5 is wanted of a step, samples of the band that a search looks at, with the peaks between
+/// them, and periods after which it counts at most: what it comes to is measured on all samples of the study, at its tolerance, once it has settled.
+const RTOL_WHERE_SLOW: f64 = 1e-7;
+const SAMPLES_WHERE_SLOW: usize = 16;
+const PASSED_IN_SEARCH: f64 = 300.0;
 
 /// What a search for an SSVI NES comes to.
 pub(super) struct Ends {
@@ -165,14 +168,17 @@ pub(super) fn is_lossy(Scene { primary, forcing, damper }: &Scene) -> bool {
     damper.is_some_and(|damper| Coupled::new(primary, forcing, &damper).is_lossy())
 }
 
-/// The study by which a search goes.
-fn sought(study: &Study) -> Study {
-    let mut sought = study.clone();
+/// The study by which a search goes, and whether its runs take several times as long as others: contacts lose energy, or the motion builds up for
+/// hundreds of periods.
+fn sought(study: &Study, tmd: &Candidate) -> (Study, bool) {
+    let with_tmd = &tmd.study.scene;
+    let slow = is_lossy(&study.scene) || settles_late(study, with_tmd);
+    let mut sought = at_few_stiffnesses(&settling(study, with_tmd, PASSED_IN_SEARCH));
     let band = sought.optimize.as_mut().and_then(|optimize| optimize.objective.omega.as_mut());
-    if let Some(band) = band.filter(|_| is_lossy(&study.scene)) {
-        band.samples = band.samples.min(SAMPLES_WITH_LOSS);
+    if let Some(band) = band.filter(|_| slow) {
+        band.samples = band.samples.min(SAMPLES_WHERE_SLOW);
     }
-    sought
+    (sought, slow)
 }
 
 /// Searches from what is known; `beside` more starts, as the end of a search under other limits.
@@ -185,10 +191,10 @@ pub(super) fn best(
 ) -> Result<Ends, Error> {
     let search = study.search().map_err(Error::rule(study))?;
     debug_assert_eq!(search.variables, Parameter::PAPER);
-    let sought = sought(&settling(study, &tmd.study.scene));
-    let objective = if is_lossy(&study.scene) {
-        let loose = loose(&sought, &search, &search.variables, RTOL_WITH_LOSS);
-        loose.within(PATIENCE_WITH_LOSS)
+    let (sought, slow) = sought(study, tmd);
+    let objective = if slow {
+        let loose = loose(&sought, &search, &search.variables, RTOL_WHERE_SLOW);
+        loose.within(PATIENCE_WHERE_SLOW)
     } else {
         searched(&sought, &search, &search.variables).within(PATIENCE)
     };
@@ -234,7 +240,8 @@ pub(super) fn best(
     // Descents from outside limits are long.
     let descents = if tmd.feasible { DESCENTS } else { DESCENTS / 2 };
     let mut worth: Vec<&Start> = Vec::new();
-    for (_, start) in all.iter().filter(|(value, _)| *value < most) {
+    let within_reach = most.min(INFEASIBLE * (1.0 + FAR));
+    for (_, start) in all.iter().filter(|(value, _)| *value < within_reach) {
         if worth.len() < descents && worth.iter().all(|(known, _)| *known != start.0) {
             worth.push(start);
         }

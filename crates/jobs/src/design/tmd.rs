@@ -1,6 +1,7 @@
 //! The best TMD: the least of a closed form over spring and dashpot, by the descents of its peaks from the best of a small grid and from
 //! the formulas of textbooks. It takes milliseconds; under a shock or a record, whose runs are followed in time, seconds.
 
+use super::candidate::at_few_stiffnesses;
 use super::requirements::Requirements;
 use crate::Error;
 use crate::tune::objective::searched;
@@ -12,7 +13,7 @@ use std::ops::ControlFlow;
 
 /// Points of the grid along k2 and c2, from and to these multiples of Den Hartog's.
 const POINTS: usize = 16;
-const RANGE: [[f64; 2]; 2] = [[0.05, 5.0], [0.05, 100.0]];
+const RANGE: [[f64; 2]; 2] = [[0.05, 5.0], [0.05, 1e4]];
 /// Points of the grid from which descents begin.
 const BEST: usize = 3;
 
@@ -61,7 +62,9 @@ impl Formula {
 /// a record, of which there are no derivatives, a simplex takes the place of descents.
 pub(super) fn best(study: &Study, formulas: &[Formula]) -> Result<[f64; 2], Error> {
     let search = study.search().map_err(Error::rule(study))?;
-    let objective = searched(study, &search, &search.variables);
+    let is_transient = study.scene.forcing.is_transient();
+    let sought = if is_transient { &at_few_stiffnesses(study) } else { study };
+    let objective = searched(sought, &search, &search.variables);
     let bounds = &search.options.bounds;
     let scales = den_hartog(&study.scene.primary, search.damper.mass.get());
     let within = |x: [f64; 2]| {
@@ -84,7 +87,7 @@ pub(super) fn best(study: &Study, formulas: &[Formula]) -> Result<[f64; 2], Erro
         .chain(grid.iter().take(BEST).map(|(_, x)| *x))
         .collect();
     let down = |start: &[f64; 2]| {
-        if study.scene.forcing.is_transient() {
+        if is_transient {
             return simplex(|x, cutoff| objective.value(x, cutoff), &search, start);
         }
         objective.descend(bounds, start).end

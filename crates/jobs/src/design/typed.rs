@@ -83,7 +83,7 @@ pub struct Specification {
     /// Limits as typed, `stroke=15mm`.
     #[serde(skip)]
     pub limit: Vec<Typed>,
-    /// Share by which k1 may be off.
+    /// Share by which k1 may be off: the worst k1 within it counts.
     pub k1_error: Option<Typed>,
     /// The dampers that are compared: tmd, ssvi, both.
     pub damper: Option<Typed>,

@@ -114,12 +114,15 @@ pub(super) fn asked(requirements: &Requirements) -> Vec<String> {
     let limits: Vec<String> =
         requirements.constraints().into_iter().map(|constraint| limit(requirements, constraint)).collect();
     let limits = if limits.is_empty() { String::new() } else { format!(", {}", limits.join(", ")) };
+    let off = requirements
+        .k1_error
+        .map_or(String::new(), |error| format!(" for every k1 within ±{}", percent(error)));
     let Requirements { m1, k1, c1, mass, goal, .. } = requirements;
     let (damping, share, goal) = (percent(c1 / critical), percent(mass / m1), goal.name());
     let ([m1, mass], k1) = ([*m1, *mass].map(|mass| sized(mass, "kg")), sized(*k1, "N/m"));
     vec![
         format!("Structure: {m1} on {k1}, {own}, damping {damping}; {driving}."),
-        format!("Asked for: a damper of {mass} ({share}) with the least {goal}{limits}."),
+        format!("Asked for: a damper of {mass} ({share}) with the least {goal}{off}{limits}."),
     ]
 }
 

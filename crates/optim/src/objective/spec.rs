@@ -178,6 +178,16 @@ impl FrequencyBand {
     }
 }
 
+impl Stiffnesses {
+    /// The values of a set, the samples of a range, N/m.
+    pub fn samples(&self) -> Vec<f64> {
+        match self {
+            Self::Set(all) => all.iter().map(|k1| k1.get()).collect(),
+            Self::Range(range) => (0..range.samples).map(|i| range.band().at(i)).collect(),
+        }
+    }
+}
+
 impl StiffnessRange {
     /// The range as a band that is searched, N/m.
     pub fn band(&self) -> Band {

@@ -92,9 +92,9 @@ def design(
     ``base_acceleration`` (m/s²), within ``band``, the range of angular frequencies (rad/s); or a ``shock``, "half-sine,20ms,5g", or a
     ``record``, "quake.csv,unit=g", of which largest values count from ``after`` (s) on. ``mass`` is that of the damper (kg),
     ``stroke`` the largest deflection of its spring (m), ``k2_max`` the largest stiffness of its spring (N/m), ``k1_error`` the share by
-    which the stiffness of the structure may be off. ``goal`` is what is made small, ``limits`` has the largest value allowed of other
-    quantities, ``damper`` is "tmd", "ssvi" or "both", ``wall`` has the damper's surfaces ("R=20mm,E=5MPa",
-    "R=20mm,rubber", "R=20mm,steel,e=0.7").
+    which the stiffness of the structure may be off: the damper is tuned for the worst within it, and limits hold for all. ``goal`` is what
+    is made small, ``limits`` has the largest value allowed of other quantities, ``damper`` is "tmd", "ssvi" or "both", ``wall`` has the
+    damper's surfaces ("R=20mm,E=5MPa", "R=20mm,rubber", "R=20mm,steel,e=0.7").
     Each number may be a text with a unit: ``band="1.8Hz..2.2Hz", mass="2 %"``.
     """
     wishes = {

@@ -82,7 +82,7 @@ pub struct Design {
     /// The same as --limit k2=...
     #[arg(long, value_name = "STIFFNESS", hide = true)]
     pub k2_max: Option<String>,
-    /// Share by which k1 may be off, e.g. 10%
+    /// Share by which k1 may be off, e.g. 10%: the damper is tuned for the worst k1 within it, and limits hold for all
     #[arg(long, value_name = "SHARE")]
     pub k1_error: Option<String>,
     /// Which dampers: tmd (at once), ssvi, both [default: both, and the better one is recommended]

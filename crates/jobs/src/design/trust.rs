@@ -1,0 +1,99 @@
+//! Which of the ends of a search is compared, and how far a damper may be trusted.
+
+use super::candidate::{Candidate, What, at_few_stiffnesses};
+use super::ssvi;
+use crate::Error;
+use crate::certify::{Certificate, Verdict, judge, judge_in_seconds};
+use retune_model::{Design, Parameter};
+use retune_study::{Rule, Study};
+
+/// Designs whose goal is larger by less than this share are nearly as good: of them the best certificate counts.
+const NEARLY: f64 = 0.15;
+/// At most so many are certified: a certificate with motions from other starts takes seconds.
+const JUDGED: usize = 2;
+
+/// A study with a design in its scene.
+pub(super) fn with(study: &Study, value: impl Fn(Parameter) -> f64) -> Result<Study, Error> {
+    let no_damper = || Error::Rule { name: study.name().to_owned(), rule: Rule::NoDamper };
+    let design = Design::new(value).map_err(|(_, source)| Error::from(source))?;
+    let scene = study.scene_at(&design).ok_or_else(no_damper)?;
+    Ok(Study { scene, ..study.clone() })
+}
+
+/// The SSVI NES that the ends of a search are, the best first, each with the value of the search: those that can be run and strike, if only
+/// just after rest. Others are TMDs. Each is measured when it is asked for.
+pub(super) fn striking<'a>(
+    study: &'a Study,
+    found: &'a ssvi::Ends,
+) -> impl Iterator<Item = Result<(f64, Candidate), Error>> + 'a {
+    let measured = |(value, end): &'a (f64, Vec<f64>)| -> Result<Option<(f64, Candidate)>, Error> {
+        let place = |parameter: Parameter| Parameter::PAPER.iter().position(|own| *own == parameter);
+        let study = with(study, |parameter| place(parameter).map_or(f64::NAN, |i| end[i]))?;
+        let steady = Candidate::new(What::Ssvi, &study).ok();
+        let all = steady.and_then(|of| if of.strikes() { Some(of) } else { of.with_start().ok() });
+        Ok(all.filter(Candidate::strikes).map(|candidate| (*value, candidate)))
+    };
+    found.ends.iter().filter_map(move |end| measured(end).transpose())
+}
+
+/// The first that keeps the limits, as a search on fewer samples may say of one that does not; else the first.
+pub(super) fn first_of(
+    all: &mut dyn Iterator<Item = Result<(f64, Candidate), Error>>,
+) -> Result<Option<(f64, Candidate)>, Error> {
+    let mut first = None;
+    for found in all {
+        let found = found?;
+        if found.1.feasible {
+            return Ok(Some(found));
+        }
+        first.get_or_insert(found);
+    }
+    Ok(first)
+}
+
+/// How much a damper may be trusted: 0 of the best verdict.
+pub(super) fn doubt(certificate: &Certificate) -> u8 {
+    match certificate.judged.verdict {
+        Some(Verdict::Robust) => 0,
+        Some(Verdict::Edge) => 1,
+        Some(Verdict::FromRest) => 2,
+        Some(Verdict::Sensitive) => 3,
+        Some(Verdict::SingleChaoticRealisation) | None => 4,
+    }
+}
+
+/// The worst within 1 % of each parameter, and of 95 in 100 neighbours: of what a shock leaves it may be a multiple, and still a small part of
+/// what it is with another damper.
+pub(super) fn worst_nearby(certificate: &Certificate) -> f64 {
+    let measured = &certificate.measured;
+    let worst = measured.sensitivity.iter().map(|of| of.worst);
+    worst.fold(measured.neighbourhood.high, f64::max)
+}
+
+/// The certificate of a candidate, as far as seconds allow.
+pub(super) fn certified(study: &Study) -> Result<Certificate, Error> {
+    let few = at_few_stiffnesses(study);
+    if ssvi::is_lossy(&study.scene) { judge_in_seconds(&few) } else { judge(&few) }
+}
+
+/// Of designs that are nearly as good as the first the one with the best certificate; one that is certain ends the search.
+pub(super) fn trusted(
+    first: (f64, Candidate),
+    others: impl Iterator<Item = Result<(f64, Candidate), Error>>,
+) -> Result<(Candidate, Certificate), Error> {
+    let (least, first) = first;
+    let certificate = certified(&first.study)?;
+    let mut best = (first, certificate);
+    let mut others = others.take(JUDGED - 1);
+    while doubt(&best.1) > 0
+        && let Some((value, candidate)) = others.next().transpose()?
+        && candidate.feasible
+        && value <= (1.0 + NEARLY) * least
+    {
+        let certificate = certified(&candidate.study)?;
+        if doubt(&certificate) < doubt(&best.1) {
+            best = (candidate, certificate);
+        }
+    }
+    Ok(best)
+}
