@@ -178,16 +178,17 @@ fn settled(study: &Study) -> Study {
     if study.scene.damper.is_none_or(|damper| damper.contact.is_none()) || !settles_late(&own, &bare) {
         return own;
     }
+    let most = SETTLED * TAU / study.scene.forcing.frequency.get();
     let mut value = own.energy(&own.scene);
-    loop {
+    while 2.0 * own.window.t0.get() <= most {
         let later = from(&own, 2.0 * own.window.t0.get());
         let next = later.energy(&later.scene);
-        let grows = value.zip(next).is_some_and(|(value, next)| next > (1.0 + GROWTH) * value);
-        if !grows || later.window.t0.get() > SETTLED * TAU / study.scene.forcing.frequency.get() {
-            return own;
+        if !value.zip(next).is_some_and(|(value, next)| next > (1.0 + GROWTH) * value) {
+            break;
         }
         (own, value) = (later, next);
     }
+    own
 }
 
 /// A study whose window, as long as it is, and limits begin at t0, s.

@@ -143,7 +143,7 @@ pub(super) fn compare(
         let least = best.as_ref().map(|(_, candidate)| candidate.goal);
         (ssvi, judged) = match best {
             Some(best) if best.1.feasible && (rival || tmd.goal > (1.0 + SAME) * best.1.goal) => {
-                let (candidate, certificate) = trusted(best, all)?;
+                let (candidate, certificate) = trusted(best, all, watch)?;
                 (Some(candidate), Some(certificate))
             }
             best => (best.map(|(_, candidate)| candidate), None),

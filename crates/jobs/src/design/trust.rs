@@ -2,8 +2,8 @@
 
 use super::candidate::{Candidate, What, at_few_stiffnesses};
 use super::ssvi;
-use crate::Error;
 use crate::certify::{Certificate, Verdict, judge, judge_in_seconds};
+use crate::{Error, Observer};
 use retune_model::{Design, Parameter};
 use retune_study::{Rule, Study};
 
@@ -80,9 +80,12 @@ pub(super) fn certified(study: &Study) -> Result<Certificate, Error> {
 pub(super) fn trusted(
     first: (f64, Candidate),
     others: impl Iterator<Item = Result<(f64, Candidate), Error>>,
+    watch: &dyn Observer,
 ) -> Result<(Candidate, Certificate), Error> {
     let (least, first) = first;
+    let bar = watch.progress("certificate of the SSVI NES", JUDGED as u64);
     let certificate = certified(&first.study)?;
+    bar.inc(1);
     let mut best = (first, certificate);
     let mut others = others.take(JUDGED - 1);
     while doubt(&best.1) > 0
@@ -91,9 +94,11 @@ pub(super) fn trusted(
         && value <= (1.0 + NEARLY) * least
     {
         let certificate = certified(&candidate.study)?;
+        bar.inc(1);
         if doubt(&certificate) < doubt(&best.1) {
             best = (candidate, certificate);
         }
     }
+    bar.finish();
     Ok(best)
 }
