@@ -29,28 +29,40 @@ pub(super) fn alike(values: &[f64], si: &'static str) -> Vec<String> {
     values.iter().map(one).collect()
 }
 
-/// Words with numbers of all their digits in SI units, as a person reads them: `0.000306354 m` is `0.3064 mm`.
+/// Words with numbers of all their digits in SI units, as a person reads them: `0.000306354 m` is `306.4 µm`, `0.6978 to 0.8342 m/s` are `697.8 to
+/// 834.2 mm/s`.
 pub(super) fn legible(words: &str) -> String {
     let all: Vec<&str> = words.split(' ').collect();
-    let mut said: Vec<String> = Vec::new();
-    let mut skip = false;
-    for (i, word) in all.iter().enumerate() {
-        if std::mem::take(&mut skip) {
-            continue;
-        }
-        let Some(value) = word.parse::<f64>().ok().filter(|_| word.contains(['.', 'e'])) else {
-            said.push((*word).to_owned());
-            continue;
-        };
-        let next = all.get(i + 1).copied().unwrap_or_default();
-        let unit = next.trim_end_matches([',', ';', '.', ')']);
+    let number = |i: usize| all.get(i).and_then(|word| word.parse::<f64>().ok());
+    // Whole numbers, as of a percentage, stay as they are.
+    let broken = |i: usize| number(i).filter(|_| all[i].contains(['.', 'e']));
+    // A word that is a unit, and what stands behind it.
+    let unit = |i: usize| {
+        let word = all.get(i).copied().unwrap_or_default();
+        let unit = word.trim_end_matches([',', ';', '.', ')']);
         let known = Measure::ALL.into_iter().map(Measure::unit).find(|known| *known == unit);
-        match known {
-            Some(known) => {
-                said.push(format!("{}{}", sized(value, known), &next[unit.len()..]));
-                skip = true;
+        (known, unit == "%", &word[unit.len()..])
+    };
+    let mut said: Vec<String> = Vec::new();
+    let mut i = 0;
+    while let Some(word) = all.get(i) {
+        let upper = number(i + 2).filter(|_| all.get(i + 1) == Some(&"to"));
+        match (broken(i), number(i).zip(upper), unit(i + 3), unit(i + 1)) {
+            (_, Some((low, high)), (Some(known), _, rest), _) => {
+                let both = alike(&[low, high], known);
+                let low = both[0].split(' ').next().unwrap_or_default();
+                said.push(format!("{low} to {}{rest}", both[1]));
+                i += 4;
             }
-            None => said.push(rounded(value, if unit == "%" { 3 } else { 4 })),
+            (Some(value), _, _, (Some(known), _, rest)) => {
+                said.push(format!("{}{rest}", sized(value, known)));
+                i += 2;
+            }
+            (value, _, _, (_, is_percent, _)) => {
+                let digits = if is_percent { 3 } else { 4 };
+                said.push(value.map_or_else(|| (*word).to_owned(), |value| rounded(value, digits)));
+                i += 1;
+            }
         }
     }
     said.join(" ")
@@ -150,4 +162,23 @@ pub(super) fn limit(requirements: &Requirements, constraint: Constraint) -> Stri
 /// Lines of at most 80 columns that are broken at spaces alone, so that no name of a file is.
 pub(super) fn broken_at_spaces() -> textwrap::Options<'static> {
     textwrap::Options::new(80).subsequent_indent("  ").word_splitter(textwrap::WordSplitter::NoHyphenation)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn regress_both_ends_of_a_range_are_told_in_one_unit() {
+        for (words, told) in [
+            ("have 0.697812 to 0.834199 m/s; 1 % more", "have 697.8 to 834.2 mm/s; 1 % more"),
+            ("stroke is 0.000306354 m, 1.41372 % over", "stroke is 306.4 µm, 1.41 % over"),
+            ("from 0.5 to 2.25 P, at omega = 548.81234 rad/s", "from 0.5 to 2.25 P, at omega = 548.8 rad/s"),
+            ("have 1 to 2 m, 3 J", "have 1 to 2 m, 3 J"),
+            ("have 0 to 0.002 m;", "have 0 to 2 mm;"),
+            ("gives 610086.25 J, 1.10261 times", "gives 610.1 kJ, 1.103 times"),
+        ] {
+            assert_eq!(legible(words), told);
+        }
+    }
 }
