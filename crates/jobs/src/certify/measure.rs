@@ -8,7 +8,7 @@ use crate::Error;
 use crate::amount::Amount;
 use rayon::prelude::*;
 use retune_dynamics::{Stretch, classify, follow};
-use retune_model::{Damper, Parameter, Scene, Source};
+use retune_model::{Damper, Measure, Parameter, Scene, Source};
 use retune_optim::{
     Ensemble, Evaluation, Goal, Limits, Objective, PerLimit, Place, Response, Statistic, Unusable,
 };
@@ -28,6 +28,8 @@ const CONVERGENCE: [(Method, f64); 5] = [
     (Method::Dop853, 1e-12),
     (Method::Ode45, 1e-10),
 ];
+/// A displacement of the structure, m, from which on the absolute tolerance of methods that step in time is in metres.
+const SMALL: f64 = 1e-3;
 /// The angle, rad, by which the force is turned between rigid walls, as a share of the tolerance that would stand there.
 const TURNED: f64 = 1e-3;
 /// Time over which methods that step in time follow a steady motion, s, and the criterion by which it has settled.
@@ -122,6 +124,15 @@ fn finer(goal: &Goal) -> Option<Goal> {
     any.then_some(goal)
 }
 
+/// The largest displacement of the structure as a share of [`SMALL`], at most 1: the absolute tolerance of methods that step in time is in
+/// proportion to it, or a motion of nanometres would be called unpredictable for their errors.
+fn smallness(scene: &Scene, window: Window, settings: &Settings) -> f64 {
+    let ask = Ask { measure: Measure::Displacement, ..Ask::default() };
+    let whole = Window { from: 0.0, ..window };
+    let largest = extremes(scene, whole, settings, ask).map_or(SMALL, |found| found.largest.value);
+    if largest > 0.0 { (largest / SMALL).min(1.0) } else { 1.0 }
+}
+
 /// The value of the worst run by every method of the convergence study; infinite where one that steps in time cannot finish it.
 fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Run>, Unusable> {
     let (response, settle) =
@@ -129,8 +140,9 @@ fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Ru
     let quantity = goal.objective.quantity();
     let walls = worst.scene.damper.and_then(|damper| damper.contact);
     let rigid = walls.is_some_and(|walls| walls.rigid().is_some());
+    let small = smallness(&worst.scene, goal.window, settings);
     let run = |&(method, rtol): &(Method, f64)| {
-        let settings = Settings { method, rtol, atol: 0.01 * rtol, ..*settings };
+        let settings = Settings { method, rtol, atol: 0.01 * rtol * small, ..*settings };
         // Between rigid walls there is no tolerance: the force is turned by as little, to tell whether the motion can be predicted.
         let turned = if rigid { TURNED * rtol } else { 0.0 };
         let ask = Ask { measure: quantity, phase: worst.phase + turned, ..Ask::default() };

@@ -97,6 +97,47 @@ fn reference_a_damper_is_tuned_for_the_worst_k1_that_there_may_be() {
     assert!(largest(&sharp, 1, "E1max") < off(&wide)[0] && sharp["k1_off"] == json!([]), "{sharp}");
 }
 
+/// The verdict on a design, and its energies as shares of k1 x², of a structure that moves by x under the force at rest.
+fn scaled(m1: f64, f1: f64, x: f64, damper: &str) -> ([serde_json::Value; 3], Vec<f64>) {
+    let k1 = m1 * (std::f64::consts::TAU * f1).powi(2);
+    let like = json!({
+        "m1": m1, "f1": format!("{f1} Hz"), "zeta": "0.5%", "force": k1 * x, "mass": "2%", "damper": damper,
+    });
+    let desk = Desk::new();
+    make(&desk, &good(asked(like).requirements()), &Silent);
+    let found = desk.read_json("out/design.json");
+    let words = [&found["build"], &found["certificate"]["verdict"], &found["certificate"]["predictable"]];
+    let count = found["candidates"].as_array().map_or(0, Vec::len);
+    let energy = (0..count).map(|candidate| largest(&found, candidate, "E1max") / (k1 * x * x));
+    (words.map(serde_json::Value::clone), energy.collect())
+}
+
+/// An answer does not depend on the units of mass, time and length: a building and a speck that moves by femtometres have the same damper and
+/// the same verdict.
+#[test]
+fn invariant_an_answer_does_not_depend_on_mass_frequency_and_displacement() {
+    let (words, energy) = scaled(4e4, 2.0, 4.4e-5, "tmd");
+    assert_eq!(words[2], json!(true));
+    for (m1, f1, x) in [(1e-6, 2.0, 1e-15), (1e6, 0.1, 0.1)] {
+        let (other, of_other) = scaled(m1, f1, x, "tmd");
+        assert_eq!(words, other, "{m1}");
+        for (own, other) in energy.iter().zip(of_other) {
+            assert!((own / other - 1.0).abs() < 1e-8, "{m1} {f1} {x}: {own} {other}");
+        }
+    }
+}
+
+/// The same with walls, which are scaled, too.
+#[test]
+fn invariant_walls_do_not_depend_on_mass_frequency_and_displacement() {
+    let (words, energy) = scaled(4e4, 2.0, 4.4e-5, "both");
+    let (other, of_other) = scaled(1e-6, 1000.0, 1e-9, "both");
+    assert!(words == other && energy.len() == 3, "{words:?} {other:?} {energy:?}");
+    for (own, other) in energy.iter().zip(of_other) {
+        assert!((own / other - 1.0).abs() < 1e-8, "{own} {other}");
+    }
+}
+
 /// What is told of a damper with walls is its worst over all k1 that there may be, and is computed again to the same bits.
 #[test]
 #[ignore = "slow: `just lab test-slow`"]
