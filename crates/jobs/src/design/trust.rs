@@ -36,7 +36,7 @@ pub(super) fn striking<'a>(
     found.ends.iter().filter_map(move |end| measured(end).transpose())
 }
 
-/// The first that keeps the limits, as a search on fewer samples may say of one that does not; else the first.
+/// The first that keeps the limits on all samples, which the best on the few of a search need not; else the first.
 pub(super) fn first_of(
     all: &mut dyn Iterator<Item = Result<(f64, Candidate), Error>>,
 ) -> Result<Option<(f64, Candidate)>, Error> {

@@ -88,11 +88,16 @@ impl<'a> Report<'a> {
         let again = |fields: &csv::StringRecord| (source.row)(Row { names: &names, fields });
         let found: Vec<Option<Numbers>> = rows.par_iter().map(again).collect();
         let mut tally = Tally::default();
-        for (fields, found) in rows.iter().zip(found) {
+        for ((fields, number), found) in rows.iter().zip(&wanted).zip(found) {
             let row = Row { names: &names, fields };
+            let at = |name: &str| format!("{name} in row {}", number + 1);
             match found {
-                Some(found) => found.iter().for_each(|(name, found)| tally.see(row.number(name), *found)),
-                None => tally.differs(f64::INFINITY), // no command writes such a row
+                Some(found) => {
+                    let mut see =
+                        |(name, found): &(String, f64)| tally.see(row.number(name), *found, || at(name));
+                    found.iter().for_each(&mut see);
+                }
+                None => tally.differs(f64::INFINITY, || at("what no command writes")),
             }
         }
         self.tell(name, &format!("{kept} of {} run again", counted(count, "row")), &tally)
@@ -111,8 +116,8 @@ impl<'a> Report<'a> {
         };
         let words = match tally.differ {
             0 => "the same to the last bit".to_owned(),
-            1 => format!("1 differs, {most}"),
-            differ => format!("{differ} differ, {most}"),
+            1 => format!("1 differs, {most}: {}", tally.at),
+            differ => format!("{differ} differ, {most}: {}", tally.at),
         };
         if tally.most > self.within {
             self.problems.push(format!("{}{name}, {words}", self.place));
@@ -152,23 +157,28 @@ impl<'a> Report<'a> {
 /// The differences between the numbers of a file and those computed again.
 #[derive(Default)]
 pub struct Tally {
-    pub differ: usize,
-    pub most: f64,
+    differ: usize,
+    most: f64,
+    /// Where the first of the largest differences stands, and what the number was and is.
+    at: String,
 }
 
 impl Tally {
     /// Compares two numbers; two that are not finite are the same: no value.
-    pub fn see(&mut self, said: f64, found: f64) {
+    fn see(&mut self, said: f64, found: f64, at: impl FnOnce() -> String) {
         let none = |value: f64| !value.is_finite();
         if said.to_bits() != found.to_bits() && !(none(said) && none(found)) {
             let difference = (said - found).abs() / said.abs().max(found.abs());
-            self.differs(if difference.is_finite() { difference } else { f64::INFINITY });
+            let by = if difference.is_finite() { difference } else { f64::INFINITY };
+            self.differs(by, || format!("{} is {said:e}, now {found:e}", at()));
         }
     }
 
-    pub fn differs(&mut self, by: f64) {
+    fn differs(&mut self, by: f64, at: impl FnOnce() -> String) {
         self.differ += 1;
-        self.most = self.most.max(by);
+        if by > self.most {
+            (self.most, self.at) = (by, at());
+        }
     }
 }
 
@@ -176,29 +186,33 @@ impl Tally {
 /// have, and the version of Retune, are ignored; so are texts made of numbers where these may differ by a share `within`.
 fn differences(said: &Value, again: &Value, within: f64) -> Tally {
     let mut tally = Tally::default();
-    visit(said, again, within, &mut tally);
+    visit(said, again, within, "", &mut tally);
     tally
 }
 
-fn visit(said: &Value, again: &Value, within: f64, tally: &mut Tally) {
+/// `path` has the names of the fields above, each with a full stop behind it.
+fn visit(said: &Value, again: &Value, within: f64, path: &str, tally: &mut Tally) {
+    let at = || path.trim_end_matches('.').to_owned();
     match (said, again) {
         (_, Value::Object(fields)) => {
             let made_of_numbers = |name: &str| within > 0.0 && ["words", "at"].contains(&name);
             for (name, again) in fields.iter().filter(|(name, _)| *name != "retune" && !made_of_numbers(name))
             {
-                visit(&said[name.as_str()], again, within, tally);
+                visit(&said[name.as_str()], again, within, &format!("{path}{name}."), tally);
             }
         }
         (Value::Array(said), Value::Array(again)) if said.len() == again.len() => {
-            said.iter().zip(again).for_each(|(said, again)| visit(said, again, within, tally));
+            for (i, (said, again)) in said.iter().zip(again).enumerate() {
+                visit(said, again, within, &format!("{path}{i}."), tally);
+            }
         }
         // A number that is not finite is null.
         (Value::Number(_) | Value::Null, Value::Number(_) | Value::Null) => {
             let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
-            tally.see(number(said), number(again));
+            tally.see(number(said), number(again), at);
         }
         _ if said == again => {}
-        _ => tally.differs(f64::INFINITY),
+        _ => tally.differs(f64::INFINITY, at),
     }
 }
 
@@ -211,7 +225,7 @@ mod tests {
     fn contract_every_leaf_is_compared() {
         let again = json!({ "a": [1.0, null], "retune": "2", "b": { "verdict": "robust", "words": "so" } });
         let look = |said: Value, within: f64| {
-            let Tally { differ, most } = differences(&said, &again, within);
+            let Tally { differ, most, .. } = differences(&said, &again, within);
             (differ, most)
         };
         let with = |path: &str, value: Value| {

@@ -56,10 +56,14 @@ fn contract_a_changed_row_is_found_by_hash_and_by_value() {
     let other = energy.parse::<f64>().expect("a number") * (1.0 + 1e-6);
     desk.write("out/surf.csv", surf.replace(row, &format!("{design},{other}")));
     let (said, end) = look(&desk, "out", 24, 0.0);
-    let line = "  surf.csv               24 of 24 rows run again: 1 differs, by at most 1.0e-6 of its value";
+    let differs = format!(
+        "1 differs, by at most 1.0e-6 of its value: E1max in row 5 is {other:e}, now {:e}",
+        energy.parse::<f64>().expect("a number")
+    );
+    let line = format!("  surf.csv               24 of 24 rows run again: {differs}");
     assert!(said.lines().any(|other| other == line), "{said}");
     let hash = "does not hold: surf.csv is not as it was made";
-    assert_eq!(end, End::Not(format!("{hash}; surf.csv, 1 differs, by at most 1.0e-6 of its value")));
+    assert_eq!(end, End::Not(format!("{hash}; surf.csv, {differs}")));
     assert_eq!(look(&desk, "out", 24, 1e-5).1, End::Not(hash.to_owned()));
 }
 
@@ -120,7 +124,7 @@ fn contract_what_cannot_be_checked_does_not_hold() {
     assert!(said.is_string() && said != "sensitive", "{certificate}");
     let sensitive = certificate.replace(&format!("\"verdict\": {said}"), "\"verdict\": \"sensitive\"");
     desk.write("out/certificate.json", sensitive);
-    let touched = "certificate.json, 1 differs, and not only in digits";
+    let touched = "certificate.json, 1 differs, and not only in digits: verdict";
     assert_eq!(end(), End::Not(format!("does not hold: {touched}; cannot be checked: {none}")));
     desk.write("out/manifest.json", &manifest);
     assert_eq!(end(), End::Not(format!("does not hold: certificate.json is not as it was made; {touched}")));
@@ -147,7 +151,8 @@ fn contract_what_cannot_be_checked_does_not_hold() {
     let row = surf.lines().nth(1).expect("a row");
     desk.write("out/surf.csv", surf.replace(row, "stiff,1,2,3,low"));
     let End::Not(problem) = end() else { panic!("it holds") };
-    assert!(problem.ends_with("; surf.csv, 1 differs, and not only in digits"), "{problem}");
+    let row = "; surf.csv, 1 differs, and not only in digits: what no command writes in row 1";
+    assert!(problem.ends_with(row), "{problem}");
     desk.remove("out/study.json");
     let End::Not(problem) = end() else { panic!("it holds") };
     assert!(problem.contains("study.json is missing"), "{problem}");
