@@ -34,7 +34,7 @@ def request(number):
     random = np.random.default_rng(number)
     log = lambda low, high: math.exp(random.uniform(math.log(low), math.log(high)))
     typed = lambda value: float(f"{value:.5g}")
-    m1, f1, zeta, share, static = log(1, 1e6), log(0.2, 100), log(5e-4, 0.05), log(0.003, 0.12), log(1e-6, 1e-2)
+    m1, f1, zeta, share, static = log(1, 1e6), log(0.2, 100), log(2e-3, 0.05), log(0.003, 0.12), log(1e-6, 1e-2)
     omega = 2 * math.pi * f1
     k1 = m1 * omega**2
     load, unit, size = [("force", "N", k1), ("imbalance", "kg·m", m1), ("base", "m", 1), ("base-acceleration", "m/s²", omega**2)][random.integers(4)]

@@ -155,6 +155,28 @@ fn contract_a_damper_with_walls_is_told_with_its_worst_k1() {
     assert!(desk.read("out/answer.txt").contains("for every k1"), "{found}");
 }
 
+/// Where every known design breaks the limits by far no descent begins, which would take minutes: the answer says what comes nearest.
+#[test]
+fn contract_limits_far_below_what_dampers_reach_are_answered_at_once() {
+    let desk = Desk::new();
+    let evaluated = |limit: &str| {
+        let asked_for = json!({
+            "m1": "2t", "f1": "10Hz", "zeta": "2%", "force": "1kN", "mass": "2%", "limits": { "ground-force": limit }
+        });
+        make(&desk, &good(asked(asked_for).requirements()), &Silent);
+        let found = desk.read_json("out/design.json");
+        assert_eq!(found["build"], json!(null), "{limit}");
+        let answer = flat(&desk.read("out/answer.txt"));
+        assert!(
+            answer.contains("None was found that keeps the limits. The nearest TMD has ground_force "),
+            "{answer}"
+        );
+        found["designs_evaluated"].as_u64().expect("a number")
+    };
+    assert_eq!(evaluated("100 N"), 58);
+    assert!(evaluated("4 kN") > 58);
+}
+
 /// What holds the mass to the structure keeps a stroke of any size.
 #[test]
 fn regress_a_stroke_that_a_strong_dashpot_keeps_is_kept() {
