@@ -173,10 +173,12 @@ def examine(retune, number, counts):
 def main():
     retune, requests = sys.argv[1], int(sys.argv[2])
     counts = {"requests": 0, "off": 0, "kept": 0, "walls": 0, "more": 0.0}
-    faults = [fault for number in range(requests) for fault in examine(retune, number, counts)]
-    print("| {requests} | {off} | {kept} | {walls} | {more:.1e} | {faults} |".format(**counts, faults=len(faults)))
-    for fault in faults:
-        print(f"fault: {fault}", file=sys.stderr)
+    faults = 0
+    for number in range(requests):
+        for fault in examine(retune, number, counts):
+            faults += 1
+            print(f"fault: {fault}", file=sys.stderr, flush=True)
+    print("| {requests} | {off} | {kept} | {walls} | {more:.1e} | {faults} |".format(**counts, faults=faults))
     return bool(faults)
 
 
