@@ -28,7 +28,8 @@ const CONVERGENCE: [(Method, f64); 5] = [
     (Method::Dop853, 1e-12),
     (Method::Ode45, 1e-10),
 ];
-/// A displacement of the structure, m, from which on the absolute tolerance of methods that step in time is in metres.
+/// A displacement of the structure, m: the absolute tolerance of methods that step in time is in proportion to smaller ones, and that of this one
+/// for all larger ones.
 const SMALL: f64 = 1e-3;
 /// The angle, rad, by which the force is turned between rigid walls, as a share of the tolerance that would stand there.
 const TURNED: f64 = 1e-3;

@@ -1,15 +1,12 @@
 //! A damper that may be built, or none: what it has of each quantity over the whole band.
 
-use retune_model::{Damper, Forcing, Measure, NonNegative, Parameter, PerMeasure, Positive, Scene, Source};
+use super::settled::settled;
+use crate::Error;
+use retune_model::{Damper, Design, Forcing, Measure, Parameter, PerMeasure, Scene, Source};
 use retune_optim::{Goal, Limit, Limits, Need, Stiffnesses, Unusable};
-use retune_study::{Setting, Span, Study};
+use retune_study::{Rule, Setting, Study};
 use serde::Serialize;
-use std::f64::consts::TAU;
 
-/// Periods of the natural frequency that are waited for at most until a motion has settled: more would take minutes.
-const SETTLED: f64 = 1000.0;
-/// A motion whose goal grows by more than this share from a window to one that is twice as late has not settled.
-const GROWTH: f64 = 0.01;
 /// A candidate is measured on so many times the samples of a search.
 const MORE: usize = 4;
 /// A search in time looks at every fourth of the stiffnesses that there may be, the ends among them.
@@ -108,7 +105,7 @@ impl Candidate {
         (value.is_finite() && value > 0.0).then_some(value)
     }
 
-    /// The goal with k1 of the structure off by each of some shares; NaN where it has no bound.
+    /// The goal, in its unit, with k1 of the structure off by each of some shares of it; NaN where it has no bound.
     pub fn with_k1_off<const N: usize>(&self, shares: [f64; N]) -> [f64; N] {
         let mut study = self.study.clone();
         if let Some(optimize) = &mut study.optimize {
@@ -158,55 +155,15 @@ impl Candidate {
     }
 }
 
-/// The study with its window, as long as it is, from when the slowest transient of a scene with its walls open has decayed, if that matters at its
-/// own t0. With a damper whose stroke or mass is kept small the motion builds up from rest for hundreds of periods, and would be measured too early.
-/// At most so many periods of the force are waited for.
-pub(super) fn settling(study: &Study, scene: &Scene, most: f64) -> Study {
-    if !settles_late(study, scene) {
-        return study.clone();
-    }
-    let period = TAU / scene.forcing.frequency.get();
-    let settled = Span::settled(scene).map_or(f64::INFINITY, |span| span.t0.get());
-    from(study, settled.min(most * period))
-}
-
-/// The study by which a candidate is measured. A damper that strikes its walls may damp less than with its walls open: where the structure alone
-/// decays slowly, the window is moved until the goal in it no longer grows.
-fn settled(study: &Study) -> Study {
-    let mut own = settling(study, &study.scene, SETTLED);
-    let bare = Scene { damper: None, ..study.scene };
-    if study.scene.damper.is_none_or(|damper| damper.contact.is_none()) || !settles_late(&own, &bare) {
-        return own;
-    }
-    let most = SETTLED * TAU / study.scene.forcing.frequency.get();
-    let mut value = own.energy(&own.scene);
-    while 2.0 * own.window.t0.get() <= most {
-        let later = from(&own, 2.0 * own.window.t0.get());
-        let next = later.energy(&later.scene);
-        if !value.zip(next).is_some_and(|(value, next)| next > (1.0 + GROWTH) * value) {
-            break;
-        }
-        (own, value) = (later, next);
-    }
-    own
-}
-
-/// A study whose window, as long as it is, and limits begin at t0, s.
-fn from(study: &Study, t0: f64) -> Study {
-    let mut study = study.clone();
-    let length = study.window.end.get() - study.window.t0.get();
-    if let (Ok(t0), Ok(end)) = (NonNegative::new(t0), Positive::new(t0 + length)) {
-        study.window = Span { t0, end };
-        if let Some(from) = study.optimize.as_mut().and_then(|optimize| optimize.limits.from.as_mut()) {
-            *from = t0; // of the same motion as the objective
-        }
-    }
-    study
-}
-
-/// Whether maxima in the window of a study hold a transient of a scene.
-pub(super) fn settles_late(study: &Study, scene: &Scene) -> bool {
-    (Study { scene: *scene, ..study.clone() }).unsettled().is_some()
+/// A study with a design in its scene: the value of each parameter of the damper in its SI unit; NaN keeps that of the scene.
+///
+/// # Errors
+/// A value is out of range, or the scene has no damper.
+pub(super) fn with_design(study: &Study, value: impl Fn(Parameter) -> f64) -> Result<Study, Error> {
+    let no_damper = || Error::Rule { name: study.name().to_owned(), rule: Rule::NoDamper };
+    let design = Design::new(value).map_err(|(_, source)| Error::from(source))?;
+    let scene = study.scene_at(&design).ok_or_else(no_damper)?;
+    Ok(Study { scene, ..study.clone() })
 }
 
 /// The goal by which a candidate is measured: on more samples of the band than a search takes, since a motion that is there in a part of it

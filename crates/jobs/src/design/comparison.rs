@@ -1,8 +1,8 @@
 //! The comparison: no damper, the best TMD, an SSVI NES, what each limit costs, and how sure the recommended one is.
 
-use super::candidate::{Candidate, What};
+use super::candidate::{Candidate, What, with_design};
 use super::requirements::{Constraint, Dampers, Requirements};
-use super::trust::{certified, doubt, first_of, striking, trusted, with, worst_nearby};
+use super::trust::{certified, doubt, first_feasible, striking, trusted, worst_nearby};
 use super::words::{parameters, question, sized};
 use super::{Formula, ssvi, tmd};
 use crate::certify::Certificate;
@@ -97,7 +97,7 @@ impl Comparison {
 
 /// The TMD with this spring and dashpot.
 fn tmd_of(study: &Study, [k2, c2]: [f64; 2]) -> Result<Candidate, Error> {
-    let study = with(study, |parameter| match parameter {
+    let study = with_design(study, |parameter| match parameter {
         Parameter::K2 => k2,
         Parameter::C2 => c2,
         _ => f64::NAN,
@@ -139,7 +139,7 @@ pub(super) fn compare(
         tried = Some(found.tried);
         let mut all = striking(ssvi_study, &found);
         let rival = requirements.dampers == Dampers::Ssvi || !tmd.feasible;
-        let best = first_of(&mut all)?;
+        let best = first_feasible(&mut all)?;
         let least = best.as_ref().map(|(_, candidate)| candidate.goal);
         (ssvi, judged) = match best {
             Some(best) if best.1.feasible && (rival || tmd.goal > (1.0 + SAME) * best.1.goal) => {
@@ -228,7 +228,7 @@ fn costs(
             let start = Parameter::PAPER.map(own);
             let stage = format!("ssvi without {}", constraint.name());
             let found = ssvi::best(&study, tmd, &[start.to_vec()], (journal, &stage), watch)?;
-            first_of(&mut striking(&study, &found))?.map(|(_, candidate)| candidate)
+            first_feasible(&mut striking(&study, &found))?.map(|(_, candidate)| candidate)
         } else {
             None
         };

@@ -4,7 +4,8 @@
 //!
 //! It is no global search: `retune optimize` of the study that is written makes one. It takes seconds.
 
-use super::candidate::{Candidate, at_few_stiffnesses, settles_late, settling};
+use super::candidate::{Candidate, at_few_stiffnesses};
+use super::settled::{settles_late, settling};
 use super::tmd::simplex;
 use super::words::sized;
 use crate::tune::descent::descend;

@@ -1,24 +1,16 @@
 //! Which of the ends of a search is compared, and how far a damper may be trusted.
 
-use super::candidate::{Candidate, What, at_few_stiffnesses};
+use super::candidate::{Candidate, What, at_few_stiffnesses, with_design};
 use super::ssvi;
 use crate::certify::{Certificate, Verdict, judge, judge_in_seconds};
 use crate::{Error, Observer};
-use retune_model::{Design, Parameter};
-use retune_study::{Rule, Study};
+use retune_model::Parameter;
+use retune_study::Study;
 
 /// Designs whose goal is larger by less than this share are nearly as good: of them the best certificate counts.
 const NEARLY: f64 = 0.15;
 /// At most so many are certified: a certificate with motions from other starts takes seconds.
 const JUDGED: usize = 2;
-
-/// A study with a design in its scene.
-pub(super) fn with(study: &Study, value: impl Fn(Parameter) -> f64) -> Result<Study, Error> {
-    let no_damper = || Error::Rule { name: study.name().to_owned(), rule: Rule::NoDamper };
-    let design = Design::new(value).map_err(|(_, source)| Error::from(source))?;
-    let scene = study.scene_at(&design).ok_or_else(no_damper)?;
-    Ok(Study { scene, ..study.clone() })
-}
 
 /// The SSVI NES that the ends of a search are, the best first, each with the value of the search: those that can be run and strike, if only
 /// just after rest. Others are TMDs. Each is measured when it is asked for.
@@ -28,7 +20,7 @@ pub(super) fn striking<'a>(
 ) -> impl Iterator<Item = Result<(f64, Candidate), Error>> + 'a {
     let measured = |(value, end): &'a (f64, Vec<f64>)| -> Result<Option<(f64, Candidate)>, Error> {
         let place = |parameter: Parameter| Parameter::PAPER.iter().position(|own| *own == parameter);
-        let study = with(study, |parameter| place(parameter).map_or(f64::NAN, |i| end[i]))?;
+        let study = with_design(study, |parameter| place(parameter).map_or(f64::NAN, |i| end[i]))?;
         let steady = Candidate::new(What::Ssvi, &study).ok();
         let all = steady.and_then(|of| if of.strikes() { Some(of) } else { of.with_start().ok() });
         Ok(all.filter(Candidate::strikes).map(|candidate| (*value, candidate)))
@@ -37,7 +29,7 @@ pub(super) fn striking<'a>(
 }
 
 /// The first that keeps the limits on all samples, which the best on the few of a search need not; else the first.
-pub(super) fn first_of(
+pub(super) fn first_feasible(
     all: &mut dyn Iterator<Item = Result<(f64, Candidate), Error>>,
 ) -> Result<Option<(f64, Candidate)>, Error> {
     let mut first = None;

@@ -1,0 +1,61 @@
+//! When the motion of a candidate counts: once its transients have decayed.
+
+use retune_model::{NonNegative, Positive, Scene};
+use retune_study::{Span, Study};
+use std::f64::consts::TAU;
+
+/// Periods of the natural frequency that are waited for at most until a motion has settled: more would take minutes.
+const SETTLED: f64 = 1000.0;
+/// A motion whose goal grows by more than this share from a window to one that is twice as late has not settled.
+const GROWTH: f64 = 0.01;
+
+/// The study with its window, as long as it is, from when the slowest transient of a scene with its walls open has decayed, if that matters at its
+/// own t0. With a damper whose stroke or mass is kept small the motion builds up from rest for hundreds of periods, and would be measured too early.
+/// At most so many periods of the force are waited for.
+pub(super) fn settling(study: &Study, scene: &Scene, most: f64) -> Study {
+    if !settles_late(study, scene) {
+        return study.clone();
+    }
+    let period = TAU / scene.forcing.frequency.get();
+    let settled = Span::settled(scene).map_or(f64::INFINITY, |span| span.t0.get());
+    beginning_at(study, settled.min(most * period))
+}
+
+/// The study by which a candidate is measured. A damper that strikes its walls may damp less than with its walls open: where the structure alone
+/// decays slowly, the window is moved until the goal in it no longer grows.
+pub(super) fn settled(study: &Study) -> Study {
+    let mut own = settling(study, &study.scene, SETTLED);
+    let bare = Scene { damper: None, ..study.scene };
+    if study.scene.damper.is_none_or(|damper| damper.contact.is_none()) || !settles_late(&own, &bare) {
+        return own;
+    }
+    let most = SETTLED * TAU / study.scene.forcing.frequency.get();
+    let mut value = own.energy(&own.scene);
+    while 2.0 * own.window.t0.get() <= most {
+        let later = beginning_at(&own, 2.0 * own.window.t0.get());
+        let next = later.energy(&later.scene);
+        if !value.zip(next).is_some_and(|(value, next)| next > (1.0 + GROWTH) * value) {
+            break;
+        }
+        (own, value) = (later, next);
+    }
+    own
+}
+
+/// A study whose window, as long as it is, and limits begin at t0, s.
+fn beginning_at(study: &Study, t0: f64) -> Study {
+    let mut study = study.clone();
+    let length = study.window.end.get() - study.window.t0.get();
+    if let (Ok(t0), Ok(end)) = (NonNegative::new(t0), Positive::new(t0 + length)) {
+        study.window = Span { t0, end };
+        if let Some(from) = study.optimize.as_mut().and_then(|optimize| optimize.limits.from.as_mut()) {
+            *from = t0; // of the same motion as the objective
+        }
+    }
+    study
+}
+
+/// Whether maxima in the window of a study hold a transient of a scene.
+pub(super) fn settles_late(study: &Study, scene: &Scene) -> bool {
+    (Study { scene: *scene, ..study.clone() }).unsettled().is_some()
+}
