@@ -47,8 +47,9 @@ pub struct BoxSide {
     pub from: f64,
     /// Largest value.
     pub to: f64,
-    /// Whether distances are measured on a linear or a logarithmic scale.
-    pub scale: Scale,
+    /// Whether distances are measured on a linear or a logarithmic scale; left out, logarithmic where the side spans a decade or more.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<Scale>,
 }
 
 impl Default for GlobalSearch {
@@ -94,7 +95,8 @@ impl GlobalSearch {
 
     fn side(&self, variable: Parameter, bounds: &Bounds) -> Result<Side, Rule> {
         let side = match (self.sides.get(variable), bounds.lower.zip(bounds.upper)) {
-            (Some(BoxSide { from, to, scale }), _) => Side { from, to, scale },
+            (Some(BoxSide { from, to, scale: Some(scale) }), _) => Side { from, to, scale },
+            (Some(BoxSide { from, to, scale: None }), _) => Side::natural(from, to),
             (None, Some((from, to))) => Side::natural(from, to),
             (None, None) => return Err(Rule::NoEnd { variable }),
         };

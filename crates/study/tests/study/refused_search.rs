@@ -1,6 +1,7 @@
 //! Searches and objectives that contradict themselves: one clear message each.
 
 use crate::refused::{problem, refused, refused_text};
+use retune_optim::Scale;
 use retune_study::read::from_text;
 use retune_study::{Rule, StudyError};
 use retune_testkit::desk::{global, tiny};
@@ -233,4 +234,16 @@ fn contract_invalid_objectives_are_refused() {
     let said = problem(&open.to_string());
     let message = "optimize.global.box.k2: missing, and optimize.bounds.k2 has no largest value";
     assert!(said.starts_with(message), "{said}");
+}
+
+/// Unless it says otherwise.
+#[test]
+fn contract_a_side_of_a_box_that_spans_a_decade_is_logarithmic() {
+    let sides = json!({ "k2": { "from": 10, "to": 100 }, "c2": { "from": 10, "to": 99 }, "D": { "from": 0, "to": 0.1 } });
+    let mut scaled = global(json!({}), json!({}));
+    scaled["optimize"]["global"]["box"] = sides;
+    let study = from_text(&scaled.to_string(), "a.json").expect("a study");
+    let (_, space, _) = study.search().expect("a search").global.expect("a global search");
+    let scales: Vec<Scale> = space.0.iter().map(|side| side.scale).collect();
+    assert_eq!(scales[..3], [Scale::Log, Scale::Linear, Scale::Linear]);
 }
