@@ -11,7 +11,7 @@
 
 mod chunks;
 pub mod objective;
-pub mod search;
+mod search;
 
 pub use objective::band::{Band, worst_over};
 pub use objective::descent::Foot;
@@ -25,11 +25,4 @@ pub use objective::runs::Proceed;
 pub use objective::spec::{FrequencyBand, Goal, Objective, Part, Response, StiffnessRange, Stiffnesses};
 pub use objective::unusable::Unusable;
 pub use retune_model::{Design, Parameter};
-pub use search::fminsearch::{
-    Bounds, Error, Fminsearch, Minimum, Options, Procedure, Row, Scaling, Stop, minimize,
-};
-pub use search::global::{Basin, Descent, Global, GlobalError, Point, basins, explore};
-pub use search::grid::{Axis, AxisError, Grid, GridError, Scale};
-pub use search::minimax::{Height, Piece, minimax};
-pub use search::space::{Side, Space};
-pub use search::surf::{best_separated, best_separated_above, surf, surf_part};
+pub use search::*;

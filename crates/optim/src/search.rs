@@ -1,8 +1,15 @@
 //! Searches for the minimum of a function of several parameters; they are independent of what it computes.
 
-pub mod fminsearch;
-pub mod global;
-pub mod grid;
-pub mod minimax;
-pub mod space;
-pub mod surf;
+pub(crate) mod fminsearch;
+pub(crate) mod global;
+pub(crate) mod grid;
+pub(crate) mod minimax;
+pub(crate) mod space;
+pub(crate) mod surf;
+
+pub use fminsearch::{Bounds, Error, Fminsearch, Minimum, Options, Procedure, Row, Scaling, Stop, minimize};
+pub use global::{Basin, Descent, Global, GlobalError, Point, basins, explore};
+pub use grid::{Axis, AxisError, Grid, GridError, Scale};
+pub use minimax::{Height, Piece, minimax};
+pub use space::{Side, Space};
+pub use surf::{best_separated, best_separated_above, surf, surf_part};

@@ -227,8 +227,8 @@ pub struct Basin {
 }
 
 /// Groups the ends of searches by basin: each joins the best end that is less than `apart` away in the coordinates of `space`, or
-/// from which no ridge separates it. There is no ridge if the objective, at [`ON_THE_WAY`] points evenly spaced between the two, is
-/// nowhere above the worse of both by more than a share [`RIDGE`] (the hill-valley test of R. K. Ursem, Multinational evolutionary
+/// from which no ridge separates it. There is no ridge if the objective, at `ON_THE_WAY` points evenly spaced between the two, is
+/// nowhere above the worse of both by more than a share `RIDGE` (the hill-valley test of R. K. Ursem, Multinational evolutionary
 /// algorithms, CEC 1999). So a level stretch is one basin, whatever its length. The basins are sorted, best first.
 pub fn basins(
     objective: impl Fn(&[f64], f64) -> f64,
