@@ -81,6 +81,7 @@ pub fn design(
     request: &Request,
     watch: &dyn Observer,
 ) -> Result<Done<Comparison>, Error> {
+    requirements.check_mode()?;
     let (tmd, ssvi) = (requirements.tmd()?, requirements.ssvi()?);
     let mut studies = vec![("TMD", &tmd)];
     if requirements.dampers != Dampers::Tmd {

@@ -3,7 +3,7 @@
 use crate::cli::{self, Cli, Command, Kind};
 use crate::screen::{self, Screen};
 use clap::CommandFactory;
-use retune_jobs::design::{self, Specification};
+use retune_jobs::design::{self, Requirements, Specification};
 use retune_jobs::designs::Designs;
 use retune_jobs::evaluate::Streams;
 use retune_jobs::prove::Guess;
@@ -100,7 +100,7 @@ fn design(arguments: &cli::Design) -> Result<(), Error> {
         Some((structure, said)) => (specification.with(structure), Some(said)),
         None => (specification, None),
     };
-    let requirements = specification.requirements()?;
+    let requirements = Requirements { of_mode: said.is_some(), ..specification.requirements()? };
     let stem = file.as_deref().and_then(Path::file_stem).map(|stem| stem.to_string_lossy().into_owned());
     let name = stem.map_or("design".to_owned(), |stem| format!("design-{stem}"));
     let out = || design::place(&requirements, &name, running.resume);

@@ -1,7 +1,7 @@
 //! The answer of `design` in words, on screen and on its page. Lines on screen fit 80 columns.
 
 use super::Formula;
-use super::candidate::{Candidate, What};
+use super::candidate::{Candidate, OtherSign, What};
 use super::comparison::Comparison;
 use super::requirements::{Constraint, Dampers, Requirements};
 use super::ssvi::is_lossy;
@@ -32,14 +32,15 @@ fn next(compared: &Comparison) -> String {
 
 /// The rows of the comparison: a quantity, what is allowed of it, and the value and the place of each candidate.
 pub(super) fn rows(requirements: &Requirements, compared: &Comparison) -> Vec<Vec<String>> {
-    let row = |measure: Measure| {
+    // Under a shock or a record limits hold from rest on, and so must the damper.
+    let later = is_later(requirements);
+    let allowed = |measure: Measure| {
         let constraint = Constraint::Of(Limit::Of(measure));
         let allowed = requirements.allowed(constraint);
-        let allowed = if allowed.is_nan() {
-            String::new()
-        } else {
-            format!(" <= {}", sized(allowed, constraint.unit()))
-        };
+        if allowed.is_nan() { String::new() } else { format!(" <= {}", sized(allowed, constraint.unit())) }
+    };
+    let row = |measure: Measure| {
+        let allowed = if later { String::new() } else { allowed(measure) };
         let first = format!("{}{allowed}", measure.name().replace('_', " "));
         let values: Vec<f64> = compared.all().map(|of| of.value(measure)).collect();
         let cell = |(of, value): (&Candidate, String)| {
@@ -52,11 +53,20 @@ pub(super) fn rows(requirements: &Requirements, compared: &Comparison) -> Vec<Ve
         };
         std::iter::once(first).chain(compared.all().zip(alike(&values, measure.unit())).map(cell)).collect()
     };
-    let mut rows: Vec<Vec<String>> = Measure::ALL
-        .into_iter()
-        .filter(|measure| is_told(requirements, compared, *measure))
-        .map(row)
-        .collect();
+    let from_rest = |measure: Measure| {
+        let first = format!("from rest: {}{}", measure.name().replace('_', " "), allowed(measure));
+        let values: Vec<f64> = compared.all().map(|of| of.most().get(measure).value).collect();
+        let cell = |(value, said): (&f64, String)| if *value == 0.0 { "-".to_owned() } else { said };
+        std::iter::once(first).chain(values.iter().zip(alike(&values, measure.unit())).map(cell)).collect()
+    };
+    let told = || Measure::ALL.into_iter().filter(|measure| is_told(requirements, compared, *measure));
+    let mut rows: Vec<Vec<String>> = told().map(row).collect();
+    if later {
+        let felt = |measure: &Measure| {
+            Measure::OF_DAMPER.contains(measure) || measure.is_of_walls() || requirements.is_limited(*measure)
+        };
+        rows.extend(told().filter(felt).map(from_rest));
+    }
     if let Some(error) = requirements.k1_error {
         let off = ["-", "+"].map(|sign| format!("{sign}{}", percent(error)));
         for (place, k1) in std::iter::once("as given".to_owned()).chain(off).enumerate() {
@@ -66,6 +76,11 @@ pub(super) fn rows(requirements: &Requirements, compared: &Comparison) -> Vec<Ve
         }
     }
     rows
+}
+
+/// Whether largest values count only from some time on after a shock or in a record.
+fn is_later(requirements: &Requirements) -> bool {
+    requirements.run().is_some_and(|run| run.from > 0.0)
 }
 
 fn table(requirements: &Requirements, compared: &Comparison) -> String {
@@ -90,8 +105,11 @@ fn table(requirements: &Requirements, compared: &Comparison) -> String {
 
 /// Whether a quantity is told: what a wall feels only where a candidate strikes one, or a limit is on it.
 pub(super) fn is_told(requirements: &Requirements, compared: &Comparison, measure: Measure) -> bool {
-    let felt = || compared.all().any(|of| of.value(measure) != 0.0);
-    !measure.is_of_walls() || requirements.is_limited(measure) || felt()
+    let most =
+        |of: &Candidate| if of.is_transient() { of.most().get(measure).value } else { of.value(measure) };
+    let felt = || compared.all().any(|of| most(of) != 0.0);
+    let is_known = !requirements.of_mode || measure != Measure::GroundForce;
+    is_known && (!measure.is_of_walls() || requirements.is_limited(measure) || felt())
 }
 
 /// Which damper to build, and why.
@@ -117,9 +135,13 @@ pub(super) fn build(requirements: &Requirements, compared: &Comparison) -> Vec<S
         }
         (What::Tmd, Some(ssvi), _) if ssvi.goal < chosen.goal => {
             let has = format!("; an SSVI NES has {}", said(ssvi.goal));
-            match (&compared.ssvi_certificate, compared.other_sign) {
-                (Some(_), Some(other)) if other > chosen.goal && requirements.driving.has_either_sign() => {
-                    format!("{has}, but {} with the other sign of the record", said(other))
+            let other = compared.other_sign.as_ref().filter(|_| requirements.driving.has_either_sign());
+            match (&compared.ssvi_certificate, other) {
+                (Some(_), Some(OtherSign { goal: other, .. })) if *other > chosen.goal => {
+                    format!("{has}, but {} with the other sign of the record", said(*other))
+                }
+                (Some(_), Some(OtherSign { broken, .. })) if !broken.is_empty() => {
+                    format!("{has}, but breaks a limit with the other sign of the record")
                 }
                 (Some(certificate), _) => {
                     format!("{has}, but cannot be trusted: {}", legible(certificate.reason()))
@@ -226,8 +248,24 @@ pub(super) fn findings(requirements: &Requirements, compared: &Comparison) -> Ve
     if let Some(held) = unsettled.and_then(|ssvi| ssvi.study.transient()) {
         lines.push(format!("Not settled: of the SSVI NES, {held}."));
     }
-    if let (Some(other), Some(What::Ssvi)) = (compared.other_sign, compared.choice) {
+    lines.extend(
+        compared.warnings.iter().map(|warning| format!("Walls of the SSVI NES: {}.", legible(warning))),
+    );
+    if let (Some(OtherSign { goal: other, broken }), Some(What::Ssvi)) =
+        (&compared.other_sign, compared.choice)
+    {
+        let other = *other;
         let (name, unit, tmd) = (compared.goal.name(), compared.goal.unit(), &compared.tmd);
+        let broken: Vec<String> = broken
+            .iter()
+            .map(|(limit, value)| {
+                format!(
+                    "; it breaks the limit of {}: {}",
+                    limit.name().replace('_', " "),
+                    sized(*value, limit.unit())
+                )
+            })
+            .collect();
         let more = if tmd.feasible && other > tmd.goal {
             format!(
                 ", more than the {} of the TMD with either: build it where the sign is known",
@@ -237,8 +275,9 @@ pub(super) fn findings(requirements: &Requirements, compared: &Comparison) -> Ve
             String::new()
         };
         lines.push(format!(
-            "With the other sign of the shock or record it has {name} {}{more}.",
-            sized(other, unit)
+            "With the other sign of the shock or record it has {name} {}{more}{}.",
+            sized(other, unit),
+            broken.concat()
         ));
     }
     if let Some(tried) = compared.tried {
@@ -266,13 +305,21 @@ fn costs(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
     let said = |of: &Candidate| sized(of.goal, goal.unit());
     let cost = |own: &Candidate, free: &Candidate| {
         let (more, name) = (own.goal / free.goal - 1.0, own.what.name());
+        // Without the limit an SSVI NES was searched from the one with it alone.
+        let least = if own.what == What::Ssvi { "at least " } else { "" };
         let instead = format!("({} instead of {})", said(own), said(free));
         if more >= 1.0 {
-            format!("makes {} of the {name} {} times as large {instead}", goal.name(), rounded(1.0 + more, 3))
+            format!(
+                "makes {} of the {name} {least}{} times as large {instead}",
+                goal.name(),
+                rounded(1.0 + more, 3)
+            )
         } else if more > 1e-6 {
-            format!("costs the {name} {} {instead}", percent(more))
-        } else {
+            format!("costs the {name} {least}{} {instead}", percent(more))
+        } else if least.is_empty() {
             format!("costs the {name} nothing")
+        } else {
+            format!("costs the {name} nothing that was found")
         }
     };
     let line = |of: &super::comparison::Cost| {

@@ -35,6 +35,15 @@ impl What {
     }
 }
 
+/// What a damper has under a shock or a record with the other sign.
+#[derive(Clone, Debug)]
+pub struct OtherSign {
+    /// The goal, in its unit.
+    pub goal: f64,
+    /// Limits that it breaks, each with what it has.
+    pub broken: Vec<(Limit, f64)>,
+}
+
 /// A candidate: its scene, and its largest values over the band.
 #[derive(Clone, Debug)]
 pub struct Candidate {
@@ -123,11 +132,19 @@ impl Candidate {
         self.study.scene.forcing.is_transient()
     }
 
-    /// Its goal under what is given in time with the other sign; none under a harmonic.
-    pub fn with_other_sign(&self) -> Option<f64> {
-        let Study { scene, .. } = &self.study;
+    /// What it has under what is given in time with the other sign; none under a harmonic.
+    pub fn with_other_sign(&self) -> Option<OtherSign> {
+        let Study { scene, solver, .. } = &self.study;
         let source = Source::History(scene.forcing.history()?.reversed()?);
-        self.study.energy(&Scene { forcing: Forcing { source, ..scene.forcing }, ..*scene })
+        let scene = Scene { forcing: Forcing { source, ..scene.forcing }, ..*scene };
+        let goal = self.study.goal();
+        let found = goal.evaluate(&scene, &solver.settings(), f64::INFINITY).ok()?;
+        let reached = |limit: &Limit| found.reached.get(*limit);
+        let broken = goal
+            .limits
+            .set()
+            .filter(|limit| goal.limits.get(*limit).is_some_and(|most| reached(limit) > most));
+        Some(OtherSign { goal: found.value, broken: broken.map(|limit| (limit, reached(&limit))).collect() })
     }
 
     /// The largest steady value of a quantity, or that under a shock or a record, in its SI unit.

@@ -1,23 +1,25 @@
 //! The comparison: no damper, the best TMD, an SSVI NES, what each limit costs, and how sure the recommended one is.
 
-use super::candidate::{Candidate, What, with_design};
+use super::candidate::{Candidate, OtherSign, What, with_design};
 use super::requirements::{Constraint, Dampers, Requirements};
 use super::trust::{certified, doubt, first_feasible, striking, trusted, worst_nearby};
 use super::words::{parameters, question, sized};
 use super::{Formula, ssvi, tmd};
 use crate::certify::Certificate;
+use crate::contacts::Contacts;
 use crate::{Error, Observer};
 use retune_model::{Measure, Parameter, Scene};
-use retune_optim::{Limit, Need};
+use retune_optim::{Limit, Need, Unusable};
+use retune_solver::Window;
 use retune_store::Journal;
-use retune_study::Study;
+use retune_study::{Setting, Study};
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
 
 /// A goal that is larger by less than this share is as good: the damper without walls is recommended.
 const SAME: f64 = 0.05;
-/// Halvings of the mass that would keep the limits, as a share of the structure's, and the largest that is looked at.
-const HALVINGS: usize = 12;
+/// Halvings of the mass that would keep the limits, as a share of the structure's, in closed form and in time; and the largest that is looked at.
+const HALVINGS: [usize; 2] = [12, 5];
 const HEAVIEST: f64 = 0.3;
 
 /// What is compared, and what follows.
@@ -38,7 +40,11 @@ pub struct Comparison {
     /// The one to build; none where none keeps the limits.
     pub choice: Option<What>,
     /// The goal of the SSVI NES under a shock or a record with the other sign, which a damper with one wall nearer than the other feels.
-    pub other_sign: Option<f64>,
+    pub other_sign: Option<OtherSign>,
+    /// Where the law of its walls is used outside of what it holds for.
+    pub warnings: Vec<String>,
+    /// Whether the structure is one mode of many, whose force on the ground is not that of the whole.
+    pub of_mode: bool,
     /// What each limit costs.
     pub costs: Vec<Cost>,
     /// The goal with k1 as given, off by minus and by plus its error, of each candidate in the order of [`Self::all`].
@@ -155,7 +161,8 @@ pub(super) fn compare(
     let is_trusted = judged
         .as_ref()
         .is_some_and(|found| doubt(found) <= 1 || requirements.run().is_some() && much_better(found))
-        && !(requirements.driving.has_either_sign() && other_sign.is_some_and(|other| other > tmd.goal));
+        && !(requirements.driving.has_either_sign()
+            && other_sign.as_ref().is_some_and(|other| other.goal > tmd.goal || !other.broken.is_empty()));
     let choice = choice(requirements, &tmd, ssvi.as_ref(), is_trusted);
     let built = ssvi.as_ref().filter(|_| choice == Some(What::Ssvi));
     let costs = costs(requirements, (&tmd, built), journal, watch)?;
@@ -164,19 +171,24 @@ pub(super) fn compare(
         Some(error) => all.iter().flatten().map(|of| of.with_k1_off([0.0, -error, error])).collect(),
         None => Vec::new(),
     };
-    let lightest = if tmd.feasible { None } else { lightest(requirements)? };
+    let lightest = if tmd.feasible { None } else { lightest(requirements, watch)? };
     let certificate = match choice {
         Some(What::Ssvi) => judged.clone(),
         Some(_) => Some(certified(&tmd.study)?),
         None => None,
     };
-    let whole = |of: Candidate| if Some(of.what) == choice { of.with_start() } else { Ok(of) };
+    let whole =
+        |of: Candidate| if Some(of.what) == choice || of.is_transient() { of.with_start() } else { Ok(of) };
+    let ssvi = ssvi.map(whole).transpose()?;
+    let warnings = ssvi.as_ref().map(warnings).transpose()?.unwrap_or_default();
     Ok(Comparison {
         goal,
-        none,
+        none: whole(none)?,
         formulas,
         tmd: whole(tmd)?,
-        ssvi: ssvi.map(whole).transpose()?,
+        ssvi,
+        warnings,
+        of_mode: requirements.of_mode,
         tried,
         choice,
         other_sign,
@@ -186,6 +198,20 @@ pub(super) fn compare(
         certificate,
         ssvi_certificate: judged,
     })
+}
+
+/// Where the law of its walls is used outside of what it holds for, where it strikes them hardest.
+fn warnings(ssvi: &Candidate) -> Result<Vec<String>, Error> {
+    let Study { scene, solver, .. } = &ssvi.study;
+    let Need { omega, k1, .. } = ssvi.most().get(Measure::ContactForce);
+    let mut hardest = vec![Setting::new(Parameter::K1, k1)];
+    if !ssvi.is_transient() {
+        hardest.push(Setting::new(Parameter::Omega, omega));
+    }
+    let scene = ssvi.study.scene_with(&hardest).unwrap_or(*scene);
+    let window = Window { from: 0.0, ..ssvi.study.window.window() };
+    let contacts = Contacts::of(&scene, window, &solver.settings()).map_err(Unusable::from)?;
+    Ok(contacts.map(|contacts| contacts.warnings()).unwrap_or_default())
 }
 
 /// The one to build: a damper without walls is simpler to build and easier to trust; one with walls must be much better, and hold where it
@@ -238,21 +264,27 @@ fn costs(
 }
 
 /// Mass of the lightest TMD that keeps the limits, kg; none up to [`HEAVIEST`].
-fn lightest(requirements: &Requirements) -> Result<Option<f64>, Error> {
+fn lightest(requirements: &Requirements, watch: &dyn Observer) -> Result<Option<f64>, Error> {
+    let halvings = HALVINGS[usize::from(requirements.run().is_some())];
+    let bar = watch.progress("lightest TMD that keeps the limits", 1 + halvings as u64);
     let keeps = |mass: f64| -> Result<bool, Error> {
         let heavier = Requirements { mass, ..requirements.clone() };
         let study = heavier.tmd()?;
         let formulas = Formula::all(&heavier, &study.scene.primary);
-        Ok(tmd_of(&study, tmd::best(&study, &formulas)?)?.feasible)
+        let keeps = tmd_of(&study, tmd::best(&study, &formulas)?)?.feasible;
+        bar.inc(1);
+        Ok(keeps)
     };
     let (mut low, mut high) = (requirements.mass, HEAVIEST * requirements.m1);
     if high <= low || !keeps(high)? {
+        bar.finish();
         return Ok(None);
     }
-    for _ in 0..HALVINGS {
+    for _ in 0..halvings {
         let middle = (low * high).sqrt();
         if keeps(middle)? { high = middle } else { low = middle }
     }
+    bar.finish();
     Ok(Some(high))
 }
 
@@ -288,6 +320,18 @@ impl Serialize for Candidate {
     }
 }
 
+/// Leaves a field out, wherever it stands.
+fn leave_out(value: &mut Value, field: &str) {
+    match value {
+        Value::Object(fields) => {
+            fields.remove(field);
+            fields.values_mut().for_each(|value| leave_out(value, field));
+        }
+        Value::Array(all) => all.iter_mut().for_each(|value| leave_out(value, field)),
+        _ => {}
+    }
+}
+
 impl Serialize for Comparison {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let by = |(formula, damper): &(Formula, Candidate)| json!({ "name": formula.name, "damper": damper });
@@ -313,8 +357,13 @@ impl Serialize for Comparison {
             "lightest_TMD": self.lightest,
             "designs_evaluated": self.tried,
         });
-        if let Some(value) = self.other_sign {
-            all["SSVI_NES_with_other_sign"] = json!(value);
+        if let Some(OtherSign { goal, broken }) = &self.other_sign {
+            all["SSVI_NES_with_other_sign"] = json!(goal);
+            all["SSVI_NES_breaks_with_other_sign"] =
+                broken.iter().map(|(limit, value)| (limit.name().to_owned(), json!(value))).collect();
+        }
+        if self.of_mode {
+            leave_out(&mut all, Measure::GroundForce.name());
         }
         all.serialize(serializer)
     }

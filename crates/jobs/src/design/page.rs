@@ -87,7 +87,7 @@ pub(super) fn page(requirements: &Requirements, compared: &Comparison) -> Docume
         title: match compared.choice {
             Some(_) if compared.is_in_vain() => "Build no damper for this".to_owned(),
             Some(what) => format!("Build the {}", what.name()),
-            None => "No damper keeps the limits".to_owned(),
+            None => "No damper was found that keeps the limits".to_owned(),
         },
         command: "retune design",
         opening,

@@ -59,6 +59,7 @@ fn checked(specification: &Specification) -> Result<Requirements, Error> {
         k1_error,
         dampers,
         wall,
+        of_mode: false,
     })
 }
 

@@ -45,6 +45,9 @@ pub struct Requirements {
     pub dampers: Dampers,
     /// The walls of an SSVI NES.
     pub wall: Option<Wall>,
+    /// Whether the structure is one mode of many: what moves the ground moves them all, and all push on it.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub of_mode: bool,
 }
 
 /// The dampers that are compared.
@@ -128,6 +131,28 @@ const HELD: f64 = 1e4;
 const LEAST_DAMPING: f64 = 0.01;
 
 impl Requirements {
+    /// Refuses what one mode of many does not tell.
+    pub(super) fn check_mode(&self) -> Result<(), Error> {
+        if !self.of_mode {
+            return Ok(());
+        }
+        let refused = |problem: &str| {
+            Err(Error::Requirement { place: "--modes".to_owned(), problem: problem.to_owned() })
+        };
+        let bare = Bare::new(&self.primary(true)?, &self.forcing()?);
+        if bare.is_on_moving_base() || bare.moves_with_base() {
+            return refused(
+                "a base that moves excites a mode by its participation factor, which the table does not have: give a force at the damper",
+            );
+        }
+        if self.goal == Measure::GroundForce || self.is_limited(Measure::GroundForce) {
+            return refused(
+                "the force on the ground is that of all modes: give another --goal or --limit than ground-force",
+            );
+        }
+        Ok(())
+    }
+
     /// The limits that are asked for, in the order of the catalogue.
     pub fn constraints(&self) -> Vec<Constraint> {
         self.limits.set().map(Constraint::Of).chain(self.k2_max.map(|_| Constraint::K2)).collect()

@@ -14,6 +14,8 @@ use std::ops::ControlFlow;
 /// Points of the grid along k2 and c2, from and to these multiples of Den Hartog's.
 const POINTS: usize = 16;
 const RANGE: [[f64; 2]; 2] = [[0.05, 5.0], [0.05, 1e4]];
+/// That of k2 under a shock or a record, which a spring much stiffer may suit.
+const RANGE_IN_TIME: [f64; 2] = [0.05, 20.0];
 /// Points of the grid from which descents begin.
 const BEST: usize = 3;
 
@@ -74,13 +76,16 @@ pub(super) fn best(study: &Study, formulas: &[Formula]) -> Result<[f64; 2], Erro
     };
     let at = |number: usize| {
         let one = |axis: usize, step: usize| {
-            let [from, to] = RANGE[axis];
+            let [from, to] = if is_transient && axis == 0 { RANGE_IN_TIME } else { RANGE[axis] };
             scales[axis] * from * (to / from).powf(step as f64 / (POINTS - 1) as f64)
         };
         let x = within([one(0, number % POINTS), one(1, number / POINTS)]);
         (objective.value(&x, f64::INFINITY), x)
     };
     let mut grid: Vec<(f64, [f64; 2])> = (0..POINTS * POINTS).into_par_iter().map(at).collect();
+    if is_transient {
+        grid = valleys(&grid);
+    }
     grid.sort_by(|a, b| a.0.total_cmp(&b.0));
     let starts: Vec<[f64; 2]> = std::iter::once(within(scales))
         .chain(formulas.iter().map(|formula| within([formula.k2, formula.c2])))
@@ -93,8 +98,27 @@ pub(super) fn best(study: &Study, formulas: &[Formula]) -> Result<[f64; 2], Erro
         objective.descend(bounds, start).end
     };
     let ends: Vec<Point> = starts.par_iter().map(down).collect();
-    let best = ends.into_iter().min_by(|a, b| a.value.total_cmp(&b.value));
+    let mut best = ends.into_iter().min_by(|a, b| a.value.total_cmp(&b.value));
+    // What keeps the limits at few stiffnesses may just break them at one between.
+    if is_transient && study.objective().k1.is_some() {
+        let whole = searched(study, &search, &search.variables);
+        let breaks = |end: &Point| end.value < INFEASIBLE && whole.value(&end.x, f64::INFINITY) >= INFEASIBLE;
+        if let Some(end) = best.take_if(|end| breaks(end)) {
+            best = Some(simplex(|x, cutoff| whole.value(x, cutoff), &search, &end.x));
+        }
+    }
     Ok(best.and_then(|end| <[f64; 2]>::try_from(end.x).ok()).unwrap_or(scales))
+}
+
+/// The points of the grid that are no worse than those around them.
+fn valleys(grid: &[(f64, [f64; 2])]) -> Vec<(f64, [f64; 2])> {
+    let beside = |number: usize| {
+        let (i, j) = (number % POINTS, number / POINTS);
+        let around = |at: usize| at.saturating_sub(1)..=(at + 1).min(POINTS - 1);
+        around(j).flat_map(move |j| around(i).map(move |i| j * POINTS + i))
+    };
+    let is_least = |number: &usize| beside(*number).all(|other| grid[*number].0 <= grid[other].0);
+    (0..grid.len()).filter(is_least).map(|number| grid[number]).collect()
 }
 
 /// What goes down where there are no derivatives, under a shock and a record: the end of the refinement of a search from a start; the start itself

@@ -34,8 +34,9 @@ pub(super) fn alike(values: &[f64], si: &'static str) -> Vec<String> {
 pub(super) fn legible(words: &str) -> String {
     let all: Vec<&str> = words.split(' ').collect();
     let number = |i: usize| all.get(i).and_then(|word| word.parse::<f64>().ok());
-    // Whole numbers, as of a percentage, stay as they are.
+    // Whole numbers, as of a percentage or a count, stay as they are; of a quantity those that are short.
     let broken = |i: usize| number(i).filter(|_| all[i].contains(['.', 'e']));
+    let long = |i: usize| number(i).filter(|value| value.abs() >= 1e4).or_else(|| broken(i));
     // A word that is a unit, and what stands behind it.
     let unit = |i: usize| {
         let word = all.get(i).copied().unwrap_or_default();
@@ -47,7 +48,7 @@ pub(super) fn legible(words: &str) -> String {
     let mut i = 0;
     while let Some(word) = all.get(i) {
         let upper = number(i + 2).filter(|_| all.get(i + 1) == Some(&"to"));
-        match (broken(i), number(i).zip(upper), unit(i + 3), unit(i + 1)) {
+        match (long(i), number(i).zip(upper), unit(i + 3), unit(i + 1)) {
             (_, Some((low, high)), (Some(known), _, rest), _) => {
                 let both = alike(&[low, high], known);
                 let low = both[0].split(' ').next().unwrap_or_default();
@@ -58,9 +59,9 @@ pub(super) fn legible(words: &str) -> String {
                 said.push(format!("{}{rest}", sized(value, known)));
                 i += 2;
             }
-            (value, _, _, (_, is_percent, _)) => {
+            (_, _, _, (_, is_percent, _)) => {
                 let digits = if is_percent { 3 } else { 4 };
-                said.push(value.map_or_else(|| (*word).to_owned(), |value| rounded(value, digits)));
+                said.push(broken(i).map_or_else(|| (*word).to_owned(), |value| rounded(value, digits)));
                 i += 1;
             }
         }
@@ -177,6 +178,7 @@ mod tests {
             ("have 1 to 2 m, 3 J", "have 1 to 2 m, 3 J"),
             ("have 0 to 0.002 m;", "have 0 to 2 mm;"),
             ("gives 610086.25 J, 1.10261 times", "gives 610.1 kJ, 1.103 times"),
+            ("contact_force is 50744 N with 122256 starts", "contact_force is 50.74 kN with 122256 starts"),
         ] {
             assert_eq!(legible(words), told);
         }

@@ -7,6 +7,7 @@ mod damaged;
 mod describe;
 mod design;
 mod design_answers;
+mod design_histories;
 mod design_records;
 mod evaluate;
 mod fronts;

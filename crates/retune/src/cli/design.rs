@@ -17,8 +17,8 @@ pub struct Design {
     /// A file of requirements, whose fields are the options below; options replace its fields
     #[serde(skip)]
     pub file: Option<PathBuf>,
-    /// A table of the modes of a structure of many degrees of freedom, one of which takes the place of m1, f1 and zeta: CSV with the columns
-    /// f (Hz), zeta (a share), M (modal mass, kg) and phi (mode shape at the damper)
+    /// A table of the modes of a structure of many degrees of freedom, one of which takes the place of m1, f1 and zeta, under forces at the
+    /// damper: CSV with the columns f (Hz), zeta (a share), M (modal mass, kg) and phi (mode shape at the damper)
     #[arg(long, value_name = "FILE", conflicts_with_all = ["m1", "f1", "k1", "zeta", "c1"])]
     #[serde(skip)]
     pub modes: Option<PathBuf>,
