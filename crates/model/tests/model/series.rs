@@ -57,8 +57,14 @@ fn exact_the_series_of_a_contact_obeys_its_equations() {
                 assert!((found[i] - rates[i]).abs() < 1e-9 * size, "{i} at {share}: {found:?} {rates:?}");
             }
             let size = there.acceleration(&moment.state).abs() + there.size_of_terms(&moment.state);
-            assert!(equations.defect(series, share * h, &moment) < 1e-11 * size);
+            let defect = equations.defect(series, share * h, &moment);
+            assert!((0.0..1e-11 * size).contains(&defect), "{defect} {size}");
         }
+        // Far beyond its reach it obeys them no longer, and says so.
+        let far = 8.0 * length(equations, state, series, 1e-4);
+        let moment = series.at(far);
+        let defect = equations.defect(series, far, &moment);
+        assert!(defect > 1e-3 * equations.acceleration(state).abs(), "{defect} at {far}");
     });
 }
 
