@@ -36,28 +36,32 @@ pub fn at_nodes<const B: usize, const M: usize>(
     sum
 }
 
-/// `Σ_j columns[j] vector[j]`, each of its numbers in two chains of dependent operations. Eight nodes at a time, whose sums stay in registers however
-/// it is compiled, and the last four of an odd M.
+/// `Σ_j columns[j] vector[j]`, in two chains of dependent operations.
 #[inline(always)]
 pub fn product<const N: usize, const M: usize>(columns: &[Nodes<M>; N], vector: &Nodes<M>) -> Nodes<M> {
-    let numbers: &[f64] = bytemuck::cast_slice(vector);
-    let ((first, second), (one, two)) = (columns.split_at(N / 2), numbers.split_at(N / 2));
-    let mut all = [f64x4::ZERO; M];
-    for i in 0..M / 2 {
-        let (mut sum, mut other) = (f64x8::ZERO, f64x8::ZERO);
-        for j in 0..N / 2 {
-            sum += eight(&first[j], i) * one[j];
-            other += eight(&second[j], i) * two[j];
-        }
-        [all[2 * i], all[2 * i + 1]] = halves(sum + other);
+    let mut numbers = [0.0; N];
+    for (four, lanes) in numbers.as_chunks_mut().0.iter_mut().zip(vector) {
+        *four = lanes.to_array();
     }
-    if M % 2 == 1 {
-        let (mut sum, mut other) = (f64x4::ZERO, f64x4::ZERO);
-        for j in 0..N / 2 {
-            sum += first[j][M - 1] * one[j];
-            other += second[j][M - 1] * two[j];
+    // Eight nodes side by side, and the last four of an odd M. Each node's sum is the same, bit by bit.
+    let (mut sum, mut other) = ([f64x8::ZERO; M], [f64x8::ZERO; M]);
+    let (mut sum_last, mut other_last) = (f64x4::ZERO, f64x4::ZERO);
+    for j in 0..N / 2 {
+        let (column, beyond) = (&columns[j], &columns[N / 2 + j]);
+        for i in 0..M / 2 {
+            sum[i] += eight(column, i) * numbers[j];
+            other[i] += eight(beyond, i) * numbers[N / 2 + j];
         }
-        all[M - 1] = sum + other;
+        if M % 2 == 1 {
+            sum_last += column[M - 1] * numbers[j];
+            other_last += beyond[M - 1] * numbers[N / 2 + j];
+        }
+    }
+    let mut all = [sum_last + other_last; M];
+    for i in 0..M / 2 {
+        let [low, high] = halves(sum[i] + other[i]);
+        all[2 * i] = low;
+        all[2 * i + 1] = high;
     }
     all
 }
