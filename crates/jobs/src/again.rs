@@ -54,6 +54,11 @@ impl<'a> Row<'a> {
         number.and_then(|number| self.fields.get(number)).unwrap_or_default()
     }
 
+    /// Whether there is a column of this name.
+    pub fn has(self, name: &str) -> bool {
+        self.names.iter().any(|other| other == name)
+    }
+
     /// A field as a number; NaN where it is not a number.
     pub fn number(self, name: &str) -> f64 {
         self.text(name).parse().unwrap_or(f64::NAN)

@@ -1,8 +1,9 @@
 //! What the contacts of a run are like, and where its energy goes: in words, and as data.
 
-use retune_model::{Coupled, HERTZ_YIELD, Scene, Side, Surfaces};
+use retune_model::{Coupled, HERTZ_YIELD, Parameter, Scene, Side, Surfaces};
+use retune_optim::Need;
 use retune_solver::{Collisions, Losses, Settings, SolverError, Window, collisions};
-use retune_study::{counted, rounded};
+use retune_study::{Setting, Study, counted, rounded};
 use serde::Serialize;
 
 /// The share of R above which the radius of the contact area is no longer small, as Hertz's theory takes it to be.
@@ -77,6 +78,22 @@ impl Contacts {
         };
         let [structure, obstacle] = Side::BOTH.map(wall);
         Ok((structure.is_some() || obstacle.is_some()).then_some(Self { structure, obstacle }))
+    }
+
+    /// Of the run from rest of a scene by a study where it strikes its walls hardest, at the place of its largest contact force; none where it strikes
+    /// none, or cannot be run there.
+    pub fn hardest(study: &Study, scene: &Scene, force: Need) -> Option<Self> {
+        let Need { value, omega, k1, restitution } = force;
+        let mut there = vec![Setting::new(Parameter::K1, k1)];
+        if !scene.forcing.is_transient() {
+            there.push(Setting::new(Parameter::Omega, omega));
+        }
+        if Parameter::Restitution.of(scene).is_some() {
+            there.push(Setting::new(Parameter::Restitution, restitution));
+        }
+        let scene = Study { scene: *scene, ..study.clone() }.scene_with(&there).ok()?;
+        let whole = Window { from: 0.0, ..study.window.window() };
+        (value > 0.0).then(|| Self::of(&scene, whole, &study.solver.settings()).ok().flatten()).flatten()
     }
 
     fn walls(&self) -> impl Iterator<Item = (&'static str, &Wall)> {

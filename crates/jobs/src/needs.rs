@@ -5,8 +5,7 @@ use crate::amount::Amount;
 use crate::contacts::Contacts;
 use retune_model::{Measure, Parameter, Scene};
 use retune_optim::{Goal, Limit, Limits, Need, Response};
-use retune_solver::Window;
-use retune_study::{Search, Setting, Study, rounded, short};
+use retune_study::{Search, Study, rounded, short};
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 
@@ -83,16 +82,10 @@ impl Largest {
         study.goal().needs(scene, &study.solver.settings(), &|| true).ok().map(Self)
     }
 
-    /// What the contacts are like in the run with the largest contact force.
+    /// What the contacts are like in the run with the largest contact force; not told under what is given in time.
     fn contacts(&self, study: &Study, design: &Scene) -> Option<Contacts> {
-        let Need { value, omega, k1, restitution } = self.0.whole.get(Measure::ContactForce);
-        let mut there = vec![Setting::new(Parameter::Omega, omega), Setting::new(Parameter::K1, k1)];
-        if Parameter::Restitution.of(design).is_some() {
-            there.push(Setting::new(Parameter::Restitution, restitution));
-        }
-        let scene = Study { scene: *design, ..study.clone() }.scene_with(&there).ok()?;
-        let whole = Window { from: 0.0, ..study.window.window() };
-        (value > 0.0).then(|| Contacts::of(&scene, whole, &study.solver.settings()).ok().flatten()).flatten()
+        let force = self.0.whole.get(Measure::ContactForce);
+        Contacts::hardest(study, design, force).filter(|_| !design.forcing.is_transient())
     }
 
     /// The largest value of a measure, from rest on.

@@ -59,7 +59,7 @@ pub(super) fn rows(requirements: &Requirements, compared: &Comparison) -> Vec<Ve
         let cell = |(value, said): (&f64, String)| if *value == 0.0 { "-".to_owned() } else { said };
         std::iter::once(first).chain(values.iter().zip(alike(&values, measure.unit())).map(cell)).collect()
     };
-    let told = || Measure::ALL.into_iter().filter(|measure| is_told(requirements, compared, *measure));
+    let told = || compared.measures().filter(|measure| is_told(requirements, compared, *measure));
     let mut rows: Vec<Vec<String>> = told().map(row).collect();
     if later {
         let felt = |measure: &Measure| {
@@ -108,8 +108,7 @@ pub(super) fn is_told(requirements: &Requirements, compared: &Comparison, measur
     let most =
         |of: &Candidate| if of.is_transient() { of.most().get(measure).value } else { of.value(measure) };
     let felt = || compared.all().any(|of| most(of) != 0.0);
-    let is_known = !requirements.of_mode || measure != Measure::GroundForce;
-    is_known && (!measure.is_of_walls() || requirements.is_limited(measure) || felt())
+    !measure.is_of_walls() || requirements.is_limited(measure) || felt()
 }
 
 /// Which damper to build, and why.
@@ -256,16 +255,11 @@ pub(super) fn findings(requirements: &Requirements, compared: &Comparison) -> Ve
     {
         let other = *other;
         let (name, unit, tmd) = (compared.goal.name(), compared.goal.unit(), &compared.tmd);
-        let broken: Vec<String> = broken
-            .iter()
-            .map(|(limit, value)| {
-                format!(
-                    "; it breaks the limit of {}: {}",
-                    limit.name().replace('_', " "),
-                    sized(*value, limit.unit())
-                )
-            })
-            .collect();
+        let breaks = |(limit, value): &(Limit, f64)| {
+            let (name, has) = (limit.name().replace('_', " "), sized(*value, limit.unit()));
+            format!("; it breaks the limit of {name}: {has}")
+        };
+        let broken: String = broken.iter().map(breaks).collect();
         let more = if tmd.feasible && other > tmd.goal {
             format!(
                 ", more than the {} of the TMD with either: build it where the sign is known",
@@ -275,9 +269,8 @@ pub(super) fn findings(requirements: &Requirements, compared: &Comparison) -> Ve
             String::new()
         };
         lines.push(format!(
-            "With the other sign of the shock or record it has {name} {}{more}{}.",
-            sized(other, unit),
-            broken.concat()
+            "With the other sign of the shock or record it has {name} {}{more}{broken}.",
+            sized(other, unit)
         ));
     }
     if let Some(tried) = compared.tried {

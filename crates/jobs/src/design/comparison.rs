@@ -9,10 +9,9 @@ use crate::certify::Certificate;
 use crate::contacts::Contacts;
 use crate::{Error, Observer};
 use retune_model::{Measure, Parameter, Scene};
-use retune_optim::{Limit, Need, Unusable};
-use retune_solver::Window;
+use retune_optim::{Limit, Need};
 use retune_store::Journal;
-use retune_study::{Setting, Study};
+use retune_study::Study;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
 
@@ -93,6 +92,12 @@ impl Comparison {
                 words: "none was found that keeps them".to_owned(),
             }),
         }
+    }
+
+    /// The quantities of which largest values are told: of one mode of many the force on the ground is not.
+    pub fn measures(&self) -> impl Iterator<Item = Measure> + use<> {
+        let of_mode = self.of_mode;
+        Measure::ALL.into_iter().filter(move |measure| !of_mode || *measure != Measure::GroundForce)
     }
 
     /// The one to build.
@@ -180,7 +185,9 @@ pub(super) fn compare(
     let whole =
         |of: Candidate| if Some(of.what) == choice || of.is_transient() { of.with_start() } else { Ok(of) };
     let ssvi = ssvi.map(whole).transpose()?;
-    let warnings = ssvi.as_ref().map(warnings).transpose()?.unwrap_or_default();
+    let hardest =
+        |of: &Candidate| Contacts::hardest(&of.study, &of.study.scene, of.most().get(Measure::ContactForce));
+    let warnings = ssvi.as_ref().and_then(hardest).map_or(Vec::new(), |contacts| contacts.warnings());
     Ok(Comparison {
         goal,
         none: whole(none)?,
@@ -198,20 +205,6 @@ pub(super) fn compare(
         certificate,
         ssvi_certificate: judged,
     })
-}
-
-/// Where the law of its walls is used outside of what it holds for, where it strikes them hardest.
-fn warnings(ssvi: &Candidate) -> Result<Vec<String>, Error> {
-    let Study { scene, solver, .. } = &ssvi.study;
-    let Need { omega, k1, .. } = ssvi.most().get(Measure::ContactForce);
-    let mut hardest = vec![Setting::new(Parameter::K1, k1)];
-    if !ssvi.is_transient() {
-        hardest.push(Setting::new(Parameter::Omega, omega));
-    }
-    let scene = ssvi.study.scene_with(&hardest).unwrap_or(*scene);
-    let window = Window { from: 0.0, ..ssvi.study.window.window() };
-    let contacts = Contacts::of(&scene, window, &solver.settings()).map_err(Unusable::from)?;
-    Ok(contacts.map(|contacts| contacts.warnings()).unwrap_or_default())
 }
 
 /// The one to build: a damper without walls is simpler to build and easier to trust; one with walls must be much better, and hold where it
@@ -288,60 +281,49 @@ fn lightest(requirements: &Requirements, watch: &dyn Observer) -> Result<Option<
     Ok(Some(high))
 }
 
-impl Serialize for Candidate {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let largest = |of: &dyn Fn(Measure) -> Need| -> Map<String, Value> {
-            let one = |measure: Measure| {
-                let Need { value, omega, k1, .. } = of(measure);
-                let mut said = json!({ "value": value });
-                if !self.is_transient() {
-                    said["omega"] = json!(omega);
-                }
-                if self.study.objective().k1.is_some() {
-                    said["k1"] = json!(k1);
-                }
-                (measure.name().to_owned(), said)
-            };
-            Measure::ALL.into_iter().map(one).collect()
+/// A candidate as data, with its largest value of these quantities.
+fn data(of: &Candidate, measures: &[Measure]) -> Value {
+    let largest = |need: &dyn Fn(Measure) -> Need| -> Map<String, Value> {
+        let one = |measure: &Measure| {
+            let Need { value, omega, k1, .. } = need(*measure);
+            let mut said = json!({ "value": value });
+            if !of.is_transient() {
+                said["omega"] = json!(omega);
+            }
+            if of.study.objective().k1.is_some() {
+                said["k1"] = json!(k1);
+            }
+            (measure.name().to_owned(), said)
         };
-        let counts = if self.is_transient() { "in_window" } else { "steady" };
-        let binding: Vec<Limit> = self.binding.iter().map(|(limit, _)| *limit).collect();
-        let mut all = json!({
-            "damper": self.what,
-            "design": self.damper(),
-            "keeps_limits": self.feasible,
-            "binding": binding,
-            counts: largest(&|measure| self.steady.get(measure)),
-        });
-        if let Some(from_rest) = &self.from_rest {
-            all["from_rest"] = largest(&|measure| from_rest.get(measure)).into();
-        }
-        all.serialize(serializer)
+        measures.iter().map(one).collect()
+    };
+    let counts = if of.is_transient() { "in_window" } else { "steady" };
+    let binding: Vec<Limit> = of.binding.iter().map(|(limit, _)| *limit).collect();
+    let mut all = json!({
+        "damper": of.what,
+        "design": of.damper(),
+        "keeps_limits": of.feasible,
+        "binding": binding,
+        counts: largest(&|measure| of.steady.get(measure)),
+    });
+    if let Some(from_rest) = &of.from_rest {
+        all["from_rest"] = largest(&|measure| from_rest.get(measure)).into();
     }
-}
-
-/// Leaves a field out, wherever it stands.
-fn leave_out(value: &mut Value, field: &str) {
-    match value {
-        Value::Object(fields) => {
-            fields.remove(field);
-            fields.values_mut().for_each(|value| leave_out(value, field));
-        }
-        Value::Array(all) => all.iter_mut().for_each(|value| leave_out(value, field)),
-        _ => {}
-    }
+    all
 }
 
 impl Serialize for Comparison {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let by = |(formula, damper): &(Formula, Candidate)| json!({ "name": formula.name, "damper": damper });
+        let measures: Vec<Measure> = self.measures().collect();
+        let data = |of: &Candidate| data(of, &measures);
+        let by = |(formula, damper): &(Formula, Candidate)| json!({ "name": formula.name, "damper": data(damper) });
         let costs: Map<String, Value> = self
             .costs
             .iter()
             .map(|cost| {
                 (
                     cost.constraint.name().to_owned(),
-                    json!({ "TMD_without": cost.tmd, "SSVI_NES_without": cost.ssvi }),
+                    json!({ "TMD_without": data(&cost.tmd), "SSVI_NES_without": cost.ssvi.as_ref().map(data) }),
                 )
             })
             .collect();
@@ -350,7 +332,7 @@ impl Serialize for Comparison {
             "build": self.choice,
             "certificate": self.certificate.as_ref().map(Certificate::short),
             "SSVI_NES_certificate": self.ssvi_certificate.as_ref().map(Certificate::short),
-            "candidates": self.all().collect::<Vec<_>>(),
+            "candidates": self.all().map(data).collect::<Vec<_>>(),
             "formulas": self.formulas.iter().map(by).collect::<Vec<_>>(),
             "limits": costs,
             "k1_off": self.detuned,
@@ -361,9 +343,6 @@ impl Serialize for Comparison {
             all["SSVI_NES_with_other_sign"] = json!(goal);
             all["SSVI_NES_breaks_with_other_sign"] =
                 broken.iter().map(|(limit, value)| (limit.name().to_owned(), json!(value))).collect();
-        }
-        if self.of_mode {
-            leave_out(&mut all, Measure::GroundForce.name());
         }
         all.serialize(serializer)
     }

@@ -30,7 +30,7 @@ pub(super) fn page(requirements: &Requirements, compared: &Comparison) -> Docume
     let rows: Vec<Vec<String>> = rows(requirements, compared);
     let told = |measure: &Measure| is_told(requirements, compared, *measure);
     let meant = |measure: Measure| format!("{} is {}", measure.name().replace('_', " "), measure.words());
-    let meaning: Vec<String> = Measure::ALL.into_iter().filter(told).map(meant).collect();
+    let meaning: Vec<String> = compared.measures().filter(told).map(meant).collect();
     let damper = |of: &Candidate| {
         let row = [of.what.name().to_owned(), parameters(of), tuning(of, requirements)];
         row.to_vec()

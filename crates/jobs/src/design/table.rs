@@ -12,17 +12,19 @@ use retune_study::Study;
 use std::path::Path;
 
 /// What a candidate has of each quantity and, where there are frequencies, where: each with its column.
-fn numbers(of: &Candidate) -> Vec<(String, f64)> {
+fn numbers(of: &Candidate, measures: &[Measure]) -> Vec<(String, f64)> {
     let one = |measure: &Measure| {
         let (name, need) = (measure.name(), of.steady.get(*measure));
         let omega = (!of.is_transient()).then(|| (format!("omega_{name}"), need.omega));
         std::iter::once((name.to_owned(), need.value)).chain(omega)
     };
-    Measure::ALL.iter().flat_map(one).collect()
+    measures.iter().flat_map(one).collect()
 }
 
 /// All candidates under all limits, and the dampers without each of them.
 pub(super) fn table(compared: &Comparison) -> Table {
+    let told: Vec<Measure> = compared.measures().collect();
+    let numbers = |of: &Candidate| numbers(of, &told);
     let measures = numbers(&compared.none);
     let head = ["limits", "damper", "m2", "k2", "c2", "D", "C"];
     let all: Vec<&str> = head.into_iter().chain(measures.iter().map(|(name, _)| name.as_str())).collect();
@@ -61,6 +63,7 @@ pub(super) fn again(place: &Path, _name: &str) -> Result<Source, Error> {
         };
         let of = if what == What::Ssvi.name() { What::Ssvi } else { What::Tmd };
         let found = Candidate::new(of, &Study { scene, ..study.clone() }).ok()?;
-        Some(numbers(&found))
+        let told: Vec<Measure> = Measure::ALL.into_iter().filter(|measure| row.has(measure.name())).collect();
+        Some(numbers(&found, &told))
     }))
 }

@@ -6,6 +6,7 @@ use retune_jobs::design::{Requirements, design};
 use retune_solver::Method;
 use retune_testkit::desk::{Desk, flat};
 use retune_testkit::observers::{good, refused};
+use retune_testkit::verified::holds;
 use serde_json::{Value, json};
 
 /// The answer to what is asked: its data and its text.
@@ -122,8 +123,9 @@ fn contract_what_one_mode_does_not_tell_is_refused_or_left_out() {
     }
     let desk = Desk::new();
     make(&desk, &mode(&[force]), &Silent);
-    for file in ["out/design.json", "out/answer.txt", "out/README.md"] {
+    for file in ["out/design.json", "out/answer.txt", "out/README.md", "out/comparison.csv"] {
         let text = desk.read(file);
         assert!(!text.contains("ground force") && !text.contains("ground_force"), "{file}: {text}");
     }
+    holds(&desk, "out", 20);
 }
