@@ -2,7 +2,7 @@
 
 use retune_model::{Coupled, HERTZ_YIELD, Parameter, Scene, Side, Surfaces};
 use retune_optim::Need;
-use retune_solver::{Collisions, Losses, Settings, SolverError, Window, collisions};
+use retune_solver::{Collisions, Losses, Window, collisions};
 use retune_study::{Setting, Study, counted, rounded};
 use serde::Serialize;
 
@@ -57,12 +57,11 @@ impl Known {
 }
 
 impl Contacts {
-    /// Of a run of a scene; none if it touches no wall.
-    pub fn of(scene: &Scene, window: Window, settings: &Settings) -> Result<Option<Self>, SolverError> {
-        let Some(damper) = scene.damper.filter(|damper| damper.contact.is_some()) else { return Ok(None) };
+    /// Of a scene, from those of a run of it; none if it touches no wall.
+    pub fn new(scene: &Scene, found: [Collisions; 2]) -> Option<Self> {
+        let damper = scene.damper.filter(|damper| damper.contact.is_some())?;
         let system = Coupled::new(&scene.primary, &scene.forcing, &damper);
         let surfaces = damper.contact.and_then(|contact| contact.surfaces().copied());
-        let found = collisions(scene, window, settings)?;
         let wall = |side: Side| {
             let Collisions { count, speed, indentation, shortest, longest } = found[side as usize];
             (count > 0 || indentation > 0.0).then(|| Wall {
@@ -77,7 +76,7 @@ impl Contacts {
             })
         };
         let [structure, obstacle] = Side::BOTH.map(wall);
-        Ok((structure.is_some() || obstacle.is_some()).then_some(Self { structure, obstacle }))
+        (structure.is_some() || obstacle.is_some()).then_some(Self { structure, obstacle })
     }
 
     /// Of the run from rest of a scene by a study where it strikes its walls hardest, at the place of its largest contact force; none where it strikes
@@ -93,7 +92,10 @@ impl Contacts {
         }
         let scene = Study { scene: *scene, ..study.clone() }.scene_with(&there).ok()?;
         let whole = Window { from: 0.0, ..study.window.window() };
-        (value > 0.0).then(|| Self::of(&scene, whole, &study.solver.settings()).ok().flatten()).flatten()
+        if value <= 0.0 {
+            return None;
+        }
+        Self::new(&scene, collisions(&scene, whole, &study.solver.settings()).ok()?)
     }
 
     fn walls(&self) -> impl Iterator<Item = (&'static str, &Wall)> {

@@ -4,7 +4,7 @@ use crate::Error;
 use crate::contacts::{Contacts, Powers};
 use crate::summary::Summary;
 use retune_model::{Measure, Rms, Stationary};
-use retune_solver::{LEFT, Rows, Sample, decay_time, trajectory};
+use retune_solver::{LEFT, Rows, Sample, decay_time, simulate_in_detail, trajectory};
 use retune_store::{Pending, order::may_write};
 use retune_study::{Study, hertz_and_rpm};
 use serde::Serialize;
@@ -35,9 +35,8 @@ pub fn simulate(study: &Study, trajectory: Option<Trajectory>) -> Result<Simulat
         may_write(file, inputs, HEAD)?;
     }
     let (window, settings) = (study.window.window(), study.solver.settings());
-    let response = retune_solver::simulate(&study.scene, window, &settings)?;
-    let losses = retune_solver::losses(&study.scene, window, &settings)?;
-    let contacts = Contacts::of(&study.scene, window, &settings)?;
+    let (response, losses, collisions) = simulate_in_detail(&study.scene, window, &settings)?;
+    let contacts = Contacts::new(&study.scene, collisions);
     let decay_time = decay_time(&study.scene, window.to, &settings)?;
     if let Some(Trajectory { file, interval, .. }) = trajectory {
         write_trajectory(study, file, interval)?;

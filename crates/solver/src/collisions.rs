@@ -2,6 +2,7 @@
 
 use crate::error::SolverError;
 use crate::motion::segment::Segment;
+use crate::observe::falls::falls;
 use crate::observe::observer::{Observer, Unobserved};
 use crate::plan::{Plan, Request};
 use crate::run::Follow;
@@ -24,7 +25,9 @@ pub struct Collisions {
 }
 
 impl Collisions {
-    const NONE: Self = Self { count: 0, speed: 0.0, indentation: 0.0, shortest: f64::INFINITY, longest: 0.0 };
+    /// No contact.
+    pub(crate) const NONE: Self =
+        Self { count: 0, speed: 0.0, indentation: 0.0, shortest: f64::INFINITY, longest: 0.0 };
 }
 
 /// The contacts with the structure and with the obstacle in a window of the run of a scene from its start.
@@ -38,15 +41,17 @@ pub fn collisions(
 ) -> Result<[Collisions; 2], SolverError> {
     let Some(damper) = &scene.damper else { return Ok([Collisions::NONE; 2]) };
     let system = Coupled::new(&scene.primary, &scene.forcing, damper);
-    let mut observer = Observed { system: &system, walls: [Collisions::NONE; 2], speed: 0.0, began: None };
+    let mut touched = Touched::new(&system);
     let plan = Plan::of(&system, settings, Request::Motion);
-    system.follow(plan, window, settings, &mut Unobserved, &mut observer)?;
-    Ok(observer.walls)
+    system.follow(plan, window, settings, &mut Unobserved, &mut touched)?;
+    Ok(touched.walls)
 }
 
-struct Observed<'a> {
+/// Watches contacts.
+pub(crate) struct Touched<'a> {
     system: &'a Coupled,
-    walls: [Collisions; 2],
+    /// Those with each wall.
+    pub walls: [Collisions; 2],
     /// Speed of the bodies relative to each other at the end of the last segment, m/s.
     speed: f64,
     /// When the contact that lasts began, s, and with which wall.
@@ -56,11 +61,22 @@ struct Observed<'a> {
 /// A body that moves away is out of the wall from this share of the largest indentation on: general methods end their pieces there only to rounding.
 const OUT: f64 = 1e-9;
 
-impl Observed<'_> {
+impl<'a> Touched<'a> {
+    /// Of a system; none yet.
+    pub fn new(system: &'a Coupled) -> Self {
+        Self { system, walls: [Collisions::NONE; 2], speed: 0.0, began: None }
+    }
+
     /// Whether a contact has ended.
     fn is_out(&self, side: Side, y: &[f64; 4]) -> bool {
         let depth = self.system.indentation(y)[side as usize];
         depth <= OUT * self.walls[side as usize].indentation && side.sign() * (y[3] - y[1]) < 0.0
+    }
+
+    fn deepens(&mut self, y: &[f64; 4]) {
+        for (wall, depth) in self.walls.iter_mut().zip(self.system.indentation(y)) {
+            wall.indentation = wall.indentation.max(depth);
+        }
     }
 
     fn ends(&mut self, t: f64) {
@@ -72,7 +88,7 @@ impl Observed<'_> {
     }
 }
 
-impl Observer<4> for Observed<'_> {
+impl Observer<4> for Touched<'_> {
     fn segment(&mut self, segment: &dyn Segment<4>) {
         let [from, to] = segment.ends();
         let out_at_once = self.began.is_some_and(|(_, side)| self.is_out(side, &from.y));
@@ -80,22 +96,14 @@ impl Observer<4> for Observed<'_> {
             self.ends(from.t);
         } else {
             // The relative position is largest at an end of the segment, or where its rate vanishes between them.
-            let rate = |theta: f64| {
-                let y = segment.at(theta).y;
-                y[3] - y[1]
-            };
-            let [mut low, mut high] = [0.0, segment.length()];
-            let rises = rate(low);
-            if rises * rate(high) < 0.0 {
-                for _ in 0..f64::MANTISSA_DIGITS {
-                    let middle = 0.5 * (low + high);
-                    if rises * rate(middle) > 0.0 { low = middle } else { high = middle }
-                }
-            }
-            for y in [from.y, to.y, segment.at(high).y] {
-                for (wall, depth) in self.walls.iter_mut().zip(self.system.indentation(&y)) {
-                    wall.indentation = wall.indentation.max(depth);
-                }
+            let rate = |y: &[f64; 4]| y[3] - y[1];
+            let [first, last] = [rate(&from.y), rate(&to.y)];
+            self.deepens(&from.y);
+            self.deepens(&to.y);
+            if first * last < 0.0 {
+                let toward = |theta: f64| first.signum() * rate(&segment.at(theta).y);
+                let turn = falls(toward, (0.0, first.abs()), (segment.length(), -last.abs()));
+                self.deepens(&segment.at(turn).y);
             }
             if self.began.is_some_and(|(_, side)| self.is_out(side, &to.y)) {
                 self.ends(to.t);

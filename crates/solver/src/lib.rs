@@ -76,7 +76,7 @@ pub use response::{Extreme, Response, SceneKind, StructureMaxima, Work};
 pub use run::{Follower, least_steps, leaves_out_a_fast_part};
 pub use settings::{Contacts, Method, Settings, Window};
 pub use settle::settled;
-pub use simulate::{e1_max, simulate, touch_downs};
+pub use simulate::{e1_max, simulate, simulate_in_detail, touch_downs};
 pub use system::{Linear, LinearSystem, System};
 pub use tangent::{Tangent, Transition};
 pub use trajectory::{Moment, Rows, Sample, trajectory};

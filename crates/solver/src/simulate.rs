@@ -1,12 +1,14 @@
 //! Simulations: a scene, a window of time and a method go in, largest values and counts come out.
 
+use crate::collisions::{Collisions, Touched};
 use crate::energy_bound;
 use crate::error::SolverError;
 use crate::hybrid::contact_free::ContactFree;
+use crate::losses::{Losses, Lost};
 use crate::observe::Magnitude;
 use crate::observe::contact_forces::ContactForces;
 use crate::observe::counters::{TouchDownTimes, TouchDowns};
-use crate::observe::observer::Unobserved;
+use crate::observe::observer::{Observer, Unobserved};
 use crate::observe::quantity::{BareEnergy, DamperEnergy, PrimaryEnergy, Quantity, RelativePosition};
 use crate::observe::running_maximum::RunningMaximum;
 use crate::observe::structure::{Structure, StructureMotion};
@@ -67,22 +69,66 @@ fn largest_energy<S: Follow<N>, const N: usize>(
 /// [`SolverError`] with the time reached.
 pub fn simulate(scene: &Scene, window: Window, settings: &Settings) -> Result<Response, SolverError> {
     let found = match &scene.damper {
-        None => simulate_bare(&Bare::new(&scene.primary, &scene.forcing), window, settings),
+        None => {
+            let system = Bare::new(&scene.primary, &scene.forcing);
+            simulate_bare(&system, window, settings, &mut Unobserved)
+        }
         Some(damper) => {
-            simulate_coupled(&Coupled::new(&scene.primary, &scene.forcing, damper), window, settings)
+            let system = Coupled::new(&scene.primary, &scene.forcing, damper);
+            simulate_coupled(&system, window, settings, &mut Unobserved)
         }
     };
-    found
-        .map_err(|error| energy_bound::error(window, error))
-        .and_then(|found| energy_bound::response(scene, window, settings, found))
+    bounded(scene, window, settings, found)
 }
 
-fn simulate_bare(system: &Bare, window: Window, settings: &Settings) -> Result<Response, SolverError> {
+/// The same, and of the same run its losses and its contacts with structure and obstacle.
+///
+/// # Errors
+/// [`SolverError`] with the time reached.
+pub fn simulate_in_detail(
+    scene: &Scene,
+    window: Window,
+    settings: &Settings,
+) -> Result<(Response, Losses, [Collisions; 2]), SolverError> {
+    match &scene.damper {
+        None => {
+            let system = Bare::new(&scene.primary, &scene.forcing);
+            let mut lost = Lost::new(&system);
+            let found = simulate_bare(&system, window, settings, &mut lost);
+            Ok((bounded(scene, window, settings, found)?, lost.all(), [Collisions::NONE; 2]))
+        }
+        Some(damper) => {
+            let system = Coupled::new(&scene.primary, &scene.forcing, damper);
+            let mut beside = (Lost::new(&system), Touched::new(&system));
+            let found = simulate_coupled(&system, window, settings, &mut beside);
+            let (lost, touched) = beside;
+            Ok((bounded(scene, window, settings, found)?, lost.all(), touched.walls))
+        }
+    }
+}
+
+/// A response within the bound on the energy that the force can have given.
+fn bounded(
+    scene: &Scene,
+    window: Window,
+    settings: &Settings,
+    found: Result<Response, SolverError>,
+) -> Result<Response, SolverError> {
+    let response = found.map_err(|error| energy_bound::error(window, error))?;
+    energy_bound::response(scene, window, settings, response)
+}
+
+fn simulate_bare(
+    system: &Bare,
+    window: Window,
+    settings: &Settings,
+    beside: &mut dyn Observer<2>,
+) -> Result<Response, SolverError> {
     let e1 = RunningMaximum::new(BareEnergy::new(system), f64::INFINITY);
-    let mut seen = (e1, largest_of(system));
+    let mut seen = ((e1, largest_of(system)), beside);
     let plan = Plan::of(system, settings, Request::Motion);
     let (state, work) = system.follow(plan, window, settings, &mut Unobserved, &mut seen)?;
-    let (e1, structure) = seen;
+    let ((e1, structure), _) = seen;
     Ok(Response {
         e1_max: e1.record(),
         e2_max: Extreme { value: 0.0, time: window.from },
@@ -121,18 +167,29 @@ fn maxima<S: Structure<N>, const N: usize>(seen: &Largest<'_, S, N>, window: Win
     StructureMaxima { displacement, velocity, acceleration, ground_force }
 }
 
-fn simulate_coupled(system: &Coupled, window: Window, settings: &Settings) -> Result<Response, SolverError> {
+fn simulate_coupled(
+    system: &Coupled,
+    window: Window,
+    settings: &Settings,
+    beside: &mut dyn Observer<4>,
+) -> Result<Response, SolverError> {
     let position = |sign: f64| RunningMaximum::new(RelativePosition::new(system, sign), f64::INFINITY);
     let e1 = RunningMaximum::new(PrimaryEnergy::new(system), f64::INFINITY);
     let e2 = RunningMaximum::new(DamperEnergy::new(system), f64::INFINITY);
     let mut before = TouchDowns::default();
     let mut seen = (
         (e1, e2),
-        ([1.0, -1.0].map(position), (TouchDowns::default(), (ContactForces::of(system), largest_of(system)))),
+        (
+            (
+                [1.0, -1.0].map(position),
+                (TouchDowns::default(), (ContactForces::of(system), largest_of(system))),
+            ),
+            beside,
+        ),
     );
     let plan = Plan::of(system, settings, Request::Motion);
     let (final_state, work) = system.follow(plan, window, settings, &mut before, &mut seen)?;
-    let ((e1, e2), ([farthest, nearest], (TouchDowns(impacts), (forces, structure)))) = seen;
+    let ((e1, e2), (([farthest, nearest], (TouchDowns(impacts), (forces, structure))), _)) = seen;
     let (nearest, farthest) = (-nearest.record().value, farthest.record().value);
     let e1_max = e1.record();
     let farthest_from = |place: f64| (farthest - place).abs().max((nearest - place).abs());
