@@ -82,12 +82,6 @@ impl Largest {
         study.goal().needs(scene, &study.solver.settings(), &|| true).ok().map(Self)
     }
 
-    /// What the contacts are like in the run with the largest contact force; not told under what is given in time.
-    fn contacts(&self, study: &Study, design: &Scene) -> Option<Contacts> {
-        let force = self.0.whole.get(Measure::ContactForce);
-        Contacts::hardest(study, design, force).filter(|_| !design.forcing.is_transient())
-    }
-
     /// The largest value of a measure, from rest on.
     pub fn value(&self, measure: Measure) -> f64 {
         self.0.whole.get(measure).value
@@ -191,7 +185,7 @@ impl Needs {
             },
         );
         let damper = damper?;
-        let contacts = damper.contacts(study, design);
+        let contacts = Contacts::hardest(study, design, damper.0.whole.get(Measure::ContactForce));
         Some(Self { damper, contacts, none, linear })
     }
 

@@ -4,18 +4,15 @@ use crate::contact::collocation::quadrature::gauss;
 use crate::error::SolverError;
 use crate::motion::knot::Knot;
 use crate::motion::segment::Segment;
-use crate::observe::observer::{Impact, Observer, Part, Unobserved};
+use crate::observe::observer::{Impact, Observer, Unobserved};
 use crate::plan::{Plan, Request};
 use crate::run::Follow;
 use crate::settings::{Settings, Window};
 use retune_model::{Bare, Coupled, Scene};
 
 /// Nodes of Gauss's rule on a segment. In a step of the exact flow, and of a contact, the fastest motion turns by at most 1.25 and 1.5 rad, over which
-/// the rule is exact to rounding.
+/// the rule is exact to rounding; in one of a held contact by 3, over which it is to 1e-10.
 const NODES: usize = 8;
-
-/// The same on a piece of a contact that is computed at once: the nodes of that lie close enough.
-const NODES_OF_PIECE: usize = 5;
 
 /// The energy that a motion loses, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -89,19 +86,16 @@ impl Loses<4> for Coupled {
 /// Adds up what a motion loses.
 pub(crate) struct Lost<'a, S> {
     system: &'a S,
-    /// Nodes on [0, 1] with their weights, for a segment and for a piece.
-    rules: [Vec<(f64, f64)>; 2],
+    /// Nodes on [0, 1] with their weights.
+    rule: Vec<(f64, f64)>,
     lost: [f64; 3],
 }
 
 impl<'a, S> Lost<'a, S> {
     /// Of a system; nothing yet.
     pub fn new(system: &'a S) -> Self {
-        let rules = [NODES, NODES_OF_PIECE].map(|count| {
-            let (nodes, weights) = gauss(count, 0);
-            nodes.into_iter().zip(weights).collect()
-        });
-        Self { system, rules, lost: [0.0; 3] }
+        let (nodes, weights) = gauss(NODES, 0);
+        Self { system, rule: nodes.into_iter().zip(weights).collect(), lost: [0.0; 3] }
     }
 
     /// What has been lost, J.
@@ -111,27 +105,13 @@ impl<'a, S> Lost<'a, S> {
     }
 }
 
-impl<S> Lost<'_, S> {
-    fn add<const N: usize>(&mut self, segment: &dyn Segment<N>, rule: usize)
-    where
-        S: Loses<N>,
-    {
-        for (node, weight) in &self.rules[rule] {
+impl<S: Loses<N>, const N: usize> Observer<N> for Lost<'_, S> {
+    fn segment(&mut self, segment: &dyn Segment<N>) {
+        for (node, weight) in &self.rule {
             let knot = segment.at(node * segment.length());
             let time = weight * segment.length() * knot.clock[0];
             let powers = self.system.powers(&knot);
             self.lost.iter_mut().zip(powers).for_each(|(lost, power)| *lost += power * time);
-        }
-    }
-}
-
-impl<S: Loses<N>, const N: usize> Observer<N> for Lost<'_, S> {
-    fn segment(&mut self, segment: &dyn Segment<N>) {
-        self.add(segment, 0);
-    }
-    fn see(&mut self, part: Part<'_, N>) {
-        if let Part::Segment(piece) = part {
-            self.add(piece, 1);
         }
     }
     fn impact(&mut self, impact: &Impact<N>) {

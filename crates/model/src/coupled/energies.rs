@@ -133,6 +133,9 @@ impl Coupled {
 
     /// The power that contacts lose, W: `(F - K z^(3/2)) ż`, what the force does to the bodies beyond what it stores.
     pub fn contact_loss(&self, y: &[f64; 4]) -> f64 {
+        if !self.is_lossy() {
+            return 0.0;
+        }
         let (forces, depths) = (self.contact_forces(y), self.indentation(y));
         let lost = |side: Side| {
             let rate = side.sign() * (y[3] - y[1]);

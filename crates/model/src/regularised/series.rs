@@ -6,7 +6,7 @@ use crate::Excitation;
 use wide::f64x4;
 
 /// The most terms of a series.
-const MOST: usize = 20;
+const MOST: usize = 28;
 
 /// Taylor coefficients in `θ` about a state in contact, in units of a length of which the motion sets the size: powers of others would overflow.
 #[derive(Clone, Debug)]

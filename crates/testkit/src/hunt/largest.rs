@@ -265,7 +265,7 @@ pub fn beside_everywhere(scenes: Scenes, count: u64) -> Hunt {
             })
         };
         // A factor that depends on the speed may turn too fast for the bounds where that vanishes: the value is then right but not proven.
-        if scenes == Scenes::Lossy && beyond(1) && !beyond(0) {
+        if matches!(scenes, Scenes::Lossy | Scenes::Held) && beyond(1) && !beyond(0) {
             undecided += 1;
         } else if beyond(0) || beyond(1) {
             faults.push(format!("{number} {missed:?} {:?}", drawn(number, scene)));
@@ -312,7 +312,10 @@ pub fn beside_dop853(scenes: Scenes, count: u64) -> Hunt {
         compared.len(),
         faults.len()
     ));
-    hunt.faults = faults.iter().map(|(number, differences, _)| format!("{number} {differences:?}")).collect();
+    let words = |(number, differences, _): &&(u64, _, _)| {
+        format!("{number} {differences:?} {:?}", drawn(*number, scene(*number)).0)
+    };
+    hunt.faults = faults.iter().map(words).collect();
     hunt.check(contact_scenes as u64 > count / 5, || {
         format!("{contact_scenes} of {count} scenes have contacts")
     });

@@ -20,6 +20,9 @@ use wide::f64x4;
 /// sign once, and that a rule of 8 nodes is exact on it.
 const TURN: f64 = 1.5;
 
+/// The same once a contact has lasted for so many steps: a spring holds the damper to its wall. A speed may still change its sign but once.
+const HELD: (u64, f64) = (100, 3.0);
+
 /// The share of the error allowed in a step that its last two terms may make up. The first term left out is smaller.
 const LAST: f64 = 0.1;
 
@@ -45,8 +48,13 @@ pub fn follow(
     start.clock = [y[Q], 0.5 * y[W]];
     equations.set_excitation(y[TIME], start.excitation);
     let mut speed = 0.0_f64;
-    let mut series = ContactSeries::for_turn(TURN, rtol);
+    let (mut turn, held_after) = (TURN, work.steps + HELD.0);
+    let mut series = ContactSeries::for_turn(turn, rtol);
     loop {
+        if work.steps == held_after {
+            turn = HELD.1;
+            series = ContactSeries::for_turn(turn, rtol);
+        }
         // The sizes of the collision that is as fast as recent motion, or comes as deep.
         let deep = equations.speed_at_depth(y[Q]);
         speed = (0.5 * speed).max(y[W].abs()).max(deep);
@@ -58,7 +66,7 @@ pub fn follow(
         let pressed = equations.pressed_depth(&y).max(depth);
         series.expand(&equations, &y, start.excitation, 1.0 / (pressed * equations.turning(pressed)));
         let Step { length, mut end, state, event } =
-            step(&equations, &series, &y, (touch_down, to), (rtol, speed, depth), work)?;
+            step(&equations, &series, &y, (touch_down, to), (rtol, turn, speed, depth), work)?;
         if equations.frequency() * (end.t - start.t) > CARRIED {
             end.excitation = system.bare().turned(start.excitation, end.t - start.t);
         }
@@ -108,7 +116,7 @@ fn step(
     series: &ContactSeries,
     y: &RegularisedState,
     (touch_down, to): (f64, f64),
-    (rtol, speed, q): (f64, f64, f64),
+    (rtol, turn, speed, q): (f64, f64, f64, f64),
     work: &mut Work,
 ) -> Result<Step, SolverError> {
     work.steps += 1;
@@ -119,7 +127,7 @@ fn step(
     let allowed = (rtol * speed).max(lost);
     let share = LAST * allowed / speed;
     let sizes = [q, speed, speed / equations.mass_ratio()].map(|size| share * size);
-    let mut length = series.reach(sizes, TURN / (q * turning));
+    let mut length = series.reach(sizes, turn / (q * turning));
     let mut moment = series.at(length);
     // The accelerations of the polynomials are those of their states at the end, too.
     while equations.defect(series, length, &moment) * length * q > allowed {
