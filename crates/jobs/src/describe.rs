@@ -3,7 +3,7 @@
 use retune_model::{
     Contact, Course, Forcing, Form, History, Loss, Measure, Of, Shape, Source, Spectrum, Sweep,
 };
-use retune_optim::{Part, Response};
+use retune_optim::{Part, Response, Stiffnesses};
 use retune_solver::{Method, least_steps, leaves_out_a_fast_part};
 use retune_study::{FrontsPlan, PaperStudy, Search, Study, counted, joined, over, short};
 
@@ -214,6 +214,9 @@ fn goal(study: &Study) -> Vec<String> {
         Response::Window => format!("in the window{band}"),
         Response::Settled => format!("settled{band}"),
         Response::Motions => "over all stable motions that are found".to_owned(),
+        Response::Steady if matches!(objective.k1, Some(Stiffnesses::Range(_))) => {
+            "steady, exact at each stiffness that is looked at".to_owned()
+        }
         Response::Steady => "steady, exact".to_owned(),
     };
     if !objective.sum.is_empty() {

@@ -7,6 +7,7 @@ use crate::summary::TunedDamper;
 use crate::tune::{Optimum, objective, table2_header, table2_row};
 use crate::{Error, columns};
 use retune_model::{Measure, Parameter};
+use retune_optim::Limit;
 use retune_report::cells;
 use retune_report::table::Table;
 use retune_store::Directory;
@@ -116,8 +117,9 @@ impl Designs {
             let Row { label, damper, found, e1_max, verdict, .. } = row;
             let (printed, damper) =
                 (printed(&row.printed.map(short).unwrap_or_default()), table2_row(damper, found));
-            let (e1_max, times) = (short(*e1_max), row.none / e1_max);
-            lines.push(format!("{label:<14}{damper:<84}{printed}{e1_max:<11}{times:<8.2}{verdict}"));
+            let (e1_max, times) = (apart(&short(*e1_max), 11), row.none / e1_max);
+            let label = apart(label, 14);
+            lines.push(format!("{label}{damper:<84}{printed}{e1_max}{times:<8.2}{verdict}"));
         }
         lines.push(String::new());
         for Row { label, damper, found, needs, reason, .. } in &self.rows {
@@ -143,8 +145,13 @@ impl Designs {
     }
 }
 
-/// E1max of a row with a design, computed again by the objective of the study of its damper: on the samples that the plan names, or else
-/// on those of the study.
+/// A text in a column, with a space behind it at least.
+fn apart(text: &str, width: usize) -> String {
+    format!("{:<width$}", format!("{text} "))
+}
+
+/// What a row says of its design, computed again by the objective of the study of its damper: E1max, and beside it stroke and contact force, on the
+/// samples that the plan names, or else E1max on those of the study; and the largest values from rest on, where the row has them.
 pub(crate) fn again(place: &Path, _name: &str) -> Result<Source, Error> {
     let resolved = Resolved::read(place)?;
     let samples = resolved.plan["samples"].as_u64().map(|samples| samples as usize);
@@ -152,11 +159,32 @@ pub(crate) fn again(place: &Path, _name: &str) -> Result<Source, Error> {
     let source = Source::new(move |row| {
         let (_, study) = studies.iter().find(|(name, _)| name == row.text("damper"))?;
         let at = row.design().filter(|_| !row.number("E1max").is_nan())?;
-        let found = match samples {
-            Some(samples) => objective::value(study, samples, &at),
-            None => study.scene_at(&at).and_then(|scene| study.energy(&scene)),
-        };
-        Some(vec![("E1max".to_owned(), found.unwrap_or(f64::INFINITY))])
+        let scene = study.scene_at(&at)?;
+        let mut numbers = Vec::new();
+        let mut say = |name: &str, value: f64| numbers.push((name.to_owned(), value));
+        match samples {
+            Some(samples) => {
+                let found = objective::finer(study, samples, &at).and_then(|study| objective::worst(&study));
+                say("E1max", found.as_ref().map_or(f64::INFINITY, |found| found.value));
+                for measure in [Measure::Stroke, Measure::ContactForce] {
+                    let limit = Limit::Of(measure);
+                    say(measure.name(), found.as_ref().map_or(f64::NAN, |found| found.reached.get(limit)));
+                }
+            }
+            None => say("E1max", study.energy(&scene).unwrap_or(f64::INFINITY)),
+        }
+        let told = TOLD.into_iter().filter(|measure| {
+            let has = samples.is_none() || !matches!(measure, Measure::Stroke | Measure::ContactForce);
+            has && !row.number(measure.name()).is_nan()
+        });
+        let told: Vec<Measure> = told.collect();
+        if !told.is_empty() {
+            let needs = Largest::of(study, &scene);
+            told.into_iter().for_each(|measure| {
+                say(measure.name(), needs.map_or(f64::NAN, |needs| needs.value(measure)));
+            });
+        }
+        Some(numbers)
     });
     // A row whose fields are empty says that no design keeps its bound.
     Ok(source.only(|row| ["k2", "c2", "D", "C", "E1max"].iter().any(|name| !row.text(name).is_empty())))

@@ -24,9 +24,11 @@ the limits
 A line is answered at once if it comes alone; of lines that come together, as many as there are threads are evaluated side by side. \
 A line has at most 4096 bytes. The end of the input ends the program.
 
-With --json the answer is an object: {\"E1max\": 190.2, \"violation\": 0.02, \"stroke\": 0.153}. E1max is then given whether limits \
+With --json the answer is an object: {\"E1max\": 190.2, \"violation\": 0.02, \"reached\": {\"stroke\": 0.153}}. E1max is then given whether limits \
 are kept or not; violation is the sum of reached / limit - 1 over the limits that are broken, 0 if none is; then follows what is \
 reached of each quantity that the study limits, by its name (stroke and cavity in m, contact_force in N). Another quantity has its own name in the place of E1max. A line without a value is {\"error\": \"...\"}.
+
+The bounds of the study are those of its searches: a design beyond them is evaluated all the same.
 
 An optimiser that takes constraints (SciPy's NonlinearConstraint, MATLAB's nonlcon, Optuna's constraints_func) makes E1max small \
 under violation <= 0. One that takes none, and has to find its way to designs that keep the limits, makes E1max small where violation \
@@ -149,16 +151,23 @@ fn object(objective: &DesignObjective, found: &Result<Evaluation, LineError>) ->
         Ok(found) => found,
         Err(reason) => return json!({ "error": reason.to_string() }).to_string(),
     };
+    let fields = |all: Vec<(&str, String)>| {
+        let all: Vec<String> = all.iter().map(|(name, value)| format!("\"{name}\": {value}")).collect();
+        format!("{{{}}}", all.join(", "))
+    };
+    let number = |value: f64| json!(value).to_string();
     let limits = objective.goal().limits;
     // An empty sum of excesses is -0.
-    let mut fields = vec![
-        (objective.goal().objective.quantity().name(), found.value),
-        ("violation", found.violation + 0.0),
+    let mut all = vec![
+        (objective.goal().objective.quantity().name(), number(found.value)),
+        ("violation", number(found.violation + 0.0)),
     ];
-    fields.extend(limits.set().map(|limit| (limit.name(), found.reached.get(limit))));
-    let fields: Vec<String> =
-        fields.iter().map(|(name, value)| format!("\"{name}\": {}", json!(value))).collect();
-    format!("{{{}}}", fields.join(", "))
+    // What is reached may have the name of the value, and be that of another part of the run.
+    if !limits.is_empty() {
+        let reached = limits.set().map(|limit| (limit.name(), number(found.reached.get(limit))));
+        all.push(("reached", fields(reached.collect())));
+    }
+    fields(all)
 }
 
 /// Evaluates a design given as numbers separated by blanks or commas.

@@ -32,7 +32,8 @@ pub struct Needs {
     pub contacts: Option<Contacts>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub none: Option<Largest>,
-    /// The best damper of the same mass without walls, for the same objective, whatever the limits and bounds of the study.
+    /// The best damper of the same mass without walls, for the same objective, whatever the limits and bounds of the study; none under what is
+    /// given in time, and beside a damper without walls none that is not better.
     #[serde(rename = "TMD", skip_serializing_if = "Option::is_none")]
     pub linear: Option<Linear>,
 }
@@ -171,8 +172,13 @@ impl Needs {
                 let linear = goal.best_linear(design, &settings).and_then(|scene| {
                     let found = goal.evaluate(&scene, &settings, f64::INFINITY).ok()?;
                     let damper = scene.damper?;
-                    let needs = Largest::of(study, &scene)?;
                     let better = found.value < (1.0 - BETTER) * value;
+                    // A damper without walls is the best TMD itself where none is better.
+                    let own = design.damper.is_some_and(|own| own.contact.is_none());
+                    if own && !better {
+                        return None;
+                    }
+                    let needs = Largest::of(study, &scene)?;
                     Some(Linear {
                         k2: damper.stiffness.get(),
                         c2: damper.damping.get(),

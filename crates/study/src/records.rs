@@ -123,6 +123,7 @@ fn csv(of: Of, source: &RecordFile, mut file: impl Read + Seek) -> Result<Sample
         return Err("line 1: is no header: give the names of its columns, the time first".to_owned());
     }
     let place = column(source.column.as_ref(), &names)?;
+    units_of(&names, place, of, source)?;
     let begin = table.position().clone();
     let (mut spacing, mut values) = (Spacing::default(), Vec::new());
     let even = rows(&mut table, place, |t, value| {
@@ -144,6 +145,27 @@ fn csv(of: Of, source: &RecordFile, mut file: impl Read + Seek) -> Result<Sample
         }
     };
     samples.and_then(|samples| samples.times(factor)).map_err(|bad| bad.to_string())
+}
+
+/// Units of time that are not s, as headers name them.
+const NOT_SECONDS: [&str; 5] = ["ms", "msec", "us", "µs", "min"];
+
+/// Refuses a header that names other units than those in which its columns are read.
+fn units_of(names: &csv::StringRecord, place: usize, of: Of, source: &RecordFile) -> Result<(), String> {
+    // `a (g)`, `t [ms]`
+    let told = |name: &'_ str| {
+        let (_, unit) = name.strip_suffix([')', ']'])?.rsplit_once(['(', '['])?;
+        Some(unit.trim().to_owned())
+    };
+    if let Some(unit) = told(&names[0]).filter(|unit| NOT_SECONDS.contains(&unit.as_str())) {
+        return Err(format!("line 1: \"{}\" is in {unit}: give times in s", &names[0]));
+    }
+    let (name, own) = (&names[place], of.units()[0]);
+    let known = told(name).and_then(|own| unit::named(&own, of.units()));
+    match known.filter(|unit| source.unit.is_none() && unit.1 != own.1) {
+        None => Ok(()),
+        Some((unit, _)) => Err(format!("line 1: \"{name}\" is in {unit}: say so, \"unit\": \"{unit}\"")),
+    }
 }
 
 /// Passes on the time and the value of each row, until one is not wanted; whether all are.
@@ -291,7 +313,8 @@ mod tests {
         let more = serde_json::json!({ "column": "b", "unit": "g", "scale": -2.0 });
         let found = samples("b.csv", "\u{feff}t;a;\"b\"\n\n0;1;4\n0.1;2;5\n", more).expect("a record");
         assert_eq!(values(found), [-2.0 * 9.80665 * 4.0, -2.0 * 9.80665 * 5.0]);
-        let found = samples("c.csv", "t,a,b\n0,1,4\n0.1,2,5\n", serde_json::json!({ "column": 3 }));
+        let found =
+            samples("c.csv", "t (s),a (g),b (m/s²)\n0,1,4\n0.1,2,5\n", serde_json::json!({ "column": 3 }));
         assert_eq!(values(found.expect("a record")), [4.0, 5.0]);
         for head in ["NPTS=   5, DT=   .0050 SEC", "   5   .0050   NPTS, DT"] {
             let text =
@@ -332,6 +355,8 @@ mod tests {
             ("a.csv", "t,a,a\n0,1,2\n1,2,2\n", &same, "its columns 2 and 3 are both called \"a\""),
             ("a.csv", "t,a\n0,1\n1e-320,2\n1,2\n", &none, "sample 2: it comes only 1e-320 s after"),
             ("a.csv", "t\n0\n1\n", &none, "no second column"),
+            ("a.csv", "t [ms],a\n0,1\n1,2\n", &none, "line 1: \"t [ms]\" is in ms: give times in s"),
+            ("a.csv", "t (s),a (g)\n0,1\n1,2\n", &none, "\"a (g)\" is in g: say so, \"unit\": \"g\""),
             ("a.at2", "1\n2\n3\n4\n5\n", &none, "do not tell NPTS and DT"),
             ("a.at2", &format!("{head}1 2"), &none, "has 2 values, but says NPTS = 3"),
             ("a.at2", &format!("{head}1 2 3x"), &none, "line 5: \"3x\" is not a number"),

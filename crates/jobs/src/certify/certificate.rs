@@ -69,7 +69,11 @@ impl Certificate {
             design: TunedDamper::of(damper, study.varied()),
             value,
             judged: measured.judged(value),
-            rule: verdict::rule(value.quantity, measured.limits.is_some(), study.certificate),
+            rule: verdict::rule(
+                value.quantity,
+                (measured.limits.is_some(), measured.has_walls),
+                study.certificate,
+            ),
             walls: None,
             records: None,
             measured,

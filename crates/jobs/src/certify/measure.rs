@@ -10,7 +10,8 @@ use rayon::prelude::*;
 use retune_dynamics::{Stretch, classify, follow};
 use retune_model::{Damper, Measure, Parameter, Scene, Source};
 use retune_optim::{
-    Ensemble, Evaluation, Goal, Limits, Objective, PerLimit, Place, Response, Statistic, Unusable,
+    Ensemble, Evaluation, Goal, Limits, Objective, PerLimit, Place, Response, Statistic, Stiffnesses,
+    Unusable,
 };
 use retune_solver::{Ask, Method, Settings, Settle, Window, extremes, settled};
 use retune_study::Study;
@@ -33,8 +34,9 @@ const CONVERGENCE: [(Method, f64); 5] = [
 const SMALL: f64 = 1e-3;
 /// The angle, rad, by which the force is turned between rigid walls, as a share of the tolerance that would stand there.
 const TURNED: f64 = 1e-3;
-/// Time over which methods that step in time follow a steady motion, s, and the criterion by which it has settled.
+/// Time over which methods that step in time follow a steady motion at least, s; times of its slowest decay; and the criterion by which it has settled.
 const LONG: f64 = 2000.0;
+const DECAYS: f64 = 40.0;
 const STEADY: Settle = Settle { periods: 10, blocks: 3, tolerance: 1e-9 };
 
 /// Which designs are looked at from other starts than rest.
@@ -72,8 +74,11 @@ pub(super) fn measure(study: &Study, damper: &Damper, others: OtherStarts) -> Re
         found.energy
     });
     let motion = match own.worst.scene.forcing.source {
-        Source::Decay(_) => Motion::decay("free decay"),
-        Source::History(_) => Motion::decay("transient"),
+        Source::Decay(_) => Motion::without_period("free decay", "dies out"),
+        Source::History(_) if goal.objective.is_stationary() => {
+            Motion::without_period("stationary", "is random, and goes on")
+        }
+        Source::History(_) => Motion::without_period("transient", "dies out"),
         _ => Motion::new(&classify(&follow(&own.worst.scene, None, Stretch::default(), &settings)?)),
     };
     let Place { largest, scene, phase, .. } = own.worst;
@@ -86,6 +91,7 @@ pub(super) fn measure(study: &Study, damper: &Damper, others: OtherStarts) -> Re
     };
     let limits = Kept::new(&goal.limits, &own.reached, &near);
     let mut measured = Measured {
+        has_walls: damper.contact.is_some(),
         worst_run,
         convergence,
         finer,
@@ -113,12 +119,18 @@ pub(super) fn measure(study: &Study, damper: &Damper, others: OtherStarts) -> Re
     Ok(Certificate::new(study, damper, &own, measured))
 }
 
-/// The goal with more samples, if any of its bands of frequencies is sampled.
+/// The goal with more samples, if any of its bands of frequencies, or of its ranges of stiffnesses, is sampled.
 fn finer(goal: &Goal) -> Option<Goal> {
     let (mut goal, mut any) = (goal.clone(), false);
     goal.objective.for_each_term(&mut |term| {
-        if let Some(band) = term.omega.as_mut().filter(|_| term.response != Response::Steady) {
-            band.samples = FINER * (band.samples - 1) + 1;
+        let band = term.omega.as_mut().filter(|_| term.response != Response::Steady);
+        let band = band.map(|band| &mut band.samples);
+        let range = match &mut term.k1 {
+            Some(Stiffnesses::Range(range)) => Some(&mut range.samples),
+            _ => None,
+        };
+        for samples in band.into_iter().chain(range) {
+            *samples = FINER * (*samples - 1) + 1;
             any = true;
         }
     });
@@ -142,6 +154,8 @@ fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Ru
     let walls = worst.scene.damper.and_then(|damper| damper.contact);
     let rigid = walls.is_some_and(|walls| walls.rigid().is_some());
     let small = smallness(&worst.scene, goal.window, settings);
+    let decay = worst.scene.slowest_decay();
+    let long = if decay > 0.0 { (DECAYS / decay).max(LONG) } else { LONG };
     let run = |&(method, rtol): &(Method, f64)| {
         let settings = Settings { method, rtol, atol: 0.01 * rtol * small, ..*settings };
         // Between rigid walls there is no tolerance: the force is turned by as little, to tell whether the motion can be predicted.
@@ -162,11 +176,12 @@ fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Ru
                 let value = own.evaluate(&worst.scene, &settings, f64::INFINITY)?.value;
                 return Ok(Run { method, rtol, value: Amount::new(quantity, value) });
             }
-            Response::Steady => settled(&worst.scene, Window { from: 0.0, to: LONG }, STEADY, &settings, ask),
+            Response::Steady => settled(&worst.scene, Window { from: 0.0, to: long }, STEADY, &settings, ask),
         };
-        // Methods that step in time are not there for the stiffest scenes.
+        // Methods that step in time are not there for the stiffest scenes, nor for a motion that takes too long to become steady.
         let value = match found {
             Err(_) if method != Method::Hybrid => f64::INFINITY,
+            Ok(found) if response == Response::Steady && !found.settled => f64::INFINITY,
             found => found?.largest.value,
         };
         Ok(Run { method, rtol, value: Amount::new(quantity, value) })

@@ -150,6 +150,7 @@ fn unusable() -> Vec<Unusable> {
         Unusable::NoDerivatives,
         Unusable::NotStationary,
         Unusable::NotDecayed { to: 12.0 },
+        Unusable::Resonates { omega: 6.3 },
         Unusable::Touches { omega: 6.3, stroke: 0.4, room: 0.06 },
     ]
 }
@@ -244,7 +245,7 @@ fn regress_the_words_of_every_error() {
         each!(settings(), SettingError: Form Name Number OutOfRange Absent Start Rule),
         each!(rules(), Rule: Name EmptyWindow NoDamper NoOptimize NoRestitutions NoGrid NothingVaried VariedTwice EmptyBand
             NotVaried Axis GridOutside Grid StartOutside NoRows SameName NotAllowed Record SumAndMore NoEnd),
-        each!(unusable(), Unusable: Value Frequency Stiffness Member Run Stopped Motions NoDerivatives NotStationary NotDecayed Touches),
+        each!(unusable(), Unusable: Value Frequency Stiffness Member Run Stopped Motions NoDerivatives NotStationary NotDecayed Resonates Touches),
         each!(solvers(), SolverError: StepTooSmall TooFast Contact TooManySteps TooSlow Unstable Implausible Missed
             RigidWalls Grazing NoPeriod NoDerivatives NonFinite),
         each!(lines(), LineError: Count Number Long Unusable),

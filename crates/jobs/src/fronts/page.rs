@@ -129,7 +129,9 @@ fn needs(fronts: &Fronts, sweep: Sweep) -> Block {
     let table = fronts.table(sweep).only(found);
     let mut columns = along(&table, sweep);
     columns.push(table.show(Measure::Stroke.name(), metre));
-    let force = table.show(Measure::ContactForce.name(), |force| format!("{force:.0}"));
+    let force = table.show(Measure::ContactForce.name(), |force| {
+        if force < 100.0 { rounded(force, 3) } else { format!("{force:.0}") }
+    });
     columns.push(force.called("contact force, N"));
     columns.extend(NEEDS.map(|measure| table.show(measure.name(), four)));
     let (head, mut rows) = table.shown(&columns);
@@ -217,7 +219,7 @@ fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
     let after =
         " other starts than rest lead it to much more, and no design as good was found that is free of this.";
     remark(&|design, _| design.is_unsafe(), "For", after);
-    let after = format!(" the best {name} touches nothing: it has become a TMD.");
+    let after = format!(" the best {name} that was found touches nothing: it is a TMD.");
     remark(&|design, _| design.force == 0.0, "For", &after);
     words
 }
@@ -249,9 +251,9 @@ fn four(value: f64) -> String {
 }
 
 fn joule(value: f64) -> String {
-    format!("{value:.1}")
+    if value < 10.0 { rounded(value, 4) } else { format!("{value:.1}") }
 }
 
 fn metre(value: f64) -> String {
-    format!("{value:.3}")
+    if value < 0.01 { rounded(value, 3) } else { format!("{value:.3}") }
 }

@@ -51,13 +51,13 @@ fn answer(losses: &Losses) -> Vec<String> {
     };
     let dashpot = |point: &Point| rounded(point.design.get(Parameter::C2), 3);
     let anew = ends(Tuning::Anew).map(|(first, last)| {
-        format!(
-            "Re-tuned for each e it has {} and {}: its dashpot goes from {} to {} N·s/m, for what impacts lose the dashpot need not.",
-            value(first),
-            value(last),
-            dashpot(first),
-            dashpot(last)
-        )
+        let [before, after] = [first, last].map(|point| point.design.get(Parameter::C2));
+        let dashpots = match before == after {
+            true => String::new(),
+            false => format!(": its dashpot goes from {} to {} N·s/m", dashpot(first), dashpot(last)),
+        };
+        let why = if after < before { ", for what impacts lose the dashpot need not" } else { "" };
+        format!("Re-tuned for each e it has {} and {}{dashpots}{why}.", value(first), value(last))
     });
     let most = losses.of(Tuning::Hedged).max_by(|a, b| a.value.total_cmp(&b.value));
     let hedged = most.map(|most| {

@@ -67,11 +67,6 @@ fn with(
     DesignObjective::new(study.scene, search.damper, variables.to_vec(), goal, settings)
 }
 
-/// The value of a design as it stands in the tables: the worst over the band of its study on so many samples.
-pub(crate) fn value(study: &Study, samples: usize, at: &Design) -> Option<f64> {
-    Some(worst(&finer(study, samples, at)?)?.value)
-}
-
 /// A study with a design in its scene, its band on so many samples; none where there is no such scene.
 pub(crate) fn finer(study: &Study, samples: usize, at: &Design) -> Option<Study> {
     let mut study = study.clone();

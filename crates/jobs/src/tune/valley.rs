@@ -4,7 +4,7 @@ use super::objective::{Task, kept, searched};
 use rayon::prelude::*;
 use retune_model::Parameter;
 use retune_optim::Bounds;
-use retune_study::rounded;
+use retune_study::{rounded, short};
 use serde::Serialize;
 
 /// The share by which the value may grow.
@@ -80,7 +80,7 @@ pub(super) fn measure(task: &Task, design: &[f64]) -> Vec<Valley> {
 }
 
 impl Valley {
-    /// The digits that tell: rounded to them the parameter stays in its range, at least two and at most six.
+    /// The digits that tell: rounded to them the parameter stays in its range, at least two and at most six; six where it may go no way at all.
     pub(crate) fn digits(&self) -> usize {
         let share = (self.own - self.from).min(self.to - self.own) / self.own.abs();
         // At an end of its range it may go one way only.
@@ -88,22 +88,31 @@ impl Valley {
         if share > 0.0 && share.is_finite() {
             ((1.0 - (2.0 * share).log10()).ceil() as usize).clamp(2, 6)
         } else {
-            4
+            6
         }
     }
 
-    /// A flat direction in words; none of a parameter that matters.
+    /// A flat direction in words, its ends rounded to the inside; none of a parameter that matters.
     pub(crate) fn words(&self) -> Option<String> {
         let Self { variable, from, to, open, own } = self;
         let (name, unit) = (variable.symbol(), variable.unit());
         if to - from <= FLAT * own.abs() {
             return None;
         }
-        let [low, high] = [from, to].map(|end| rounded(*end, 2));
-        Some(if *open {
-            format!("any {name} above {low} {unit}")
-        } else {
-            format!("{name} from {low} to {high} {unit}")
-        })
+        let [low, high] = [inward(*from, f64::ceil), inward(*to, f64::floor)].map(short);
+        // Beyond the last step it was not looked.
+        let least = if *open { "at least " } else { "" };
+        Some(format!("{name} from {low} to {least}{high} {unit}"))
     }
+}
+
+/// A number to two digits, in the direction that `round` takes.
+fn inward(value: f64, round: impl Fn(f64) -> f64) -> f64 {
+    let own: f64 = rounded(value, 2).parse().unwrap_or(value);
+    if own == value || value <= 0.0 {
+        return own;
+    }
+    let unit = 10f64.powf(value.log10().floor() - 1.0);
+    let inside = round(value / unit) * unit;
+    rounded(inside, 2).parse().unwrap_or(inside)
 }

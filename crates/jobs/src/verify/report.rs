@@ -88,6 +88,7 @@ impl<'a> Report<'a> {
         let again = |fields: &csv::StringRecord| (source.row)(Row { names: &names, fields });
         let found: Vec<Option<Numbers>> = rows.par_iter().map(again).collect();
         let mut tally = Tally::default();
+        let compared = found.iter().flatten().next().map_or_else(String::new, columns);
         for ((fields, number), found) in rows.iter().zip(&wanted).zip(found) {
             let row = Row { names: &names, fields };
             let at = |name: &str| format!("{name} in row {}", number + 1);
@@ -100,7 +101,7 @@ impl<'a> Report<'a> {
                 None => tally.differs(f64::INFINITY, || at("what no command writes")),
             }
         }
-        self.tell(name, &format!("{kept} of {} run again", counted(count, "row")), &tally)
+        self.tell(name, &format!("{kept} of {} run again{compared}", counted(count, "row")), &tally)
     }
 
     /// Reports how many numbers of the file `name` differ; `what` says which were compared.
@@ -151,6 +152,18 @@ impl<'a> Report<'a> {
         let and = if unchecked.is_empty() { "" } else { "; cannot be checked: " };
         let problem = format!("does not hold: {}{and}{unchecked}", problems.join("; "));
         Err(Error::NotHeld { path: path.to_owned(), problem })
+    }
+}
+
+/// The most columns that are named one by one.
+const MOST_NAMED: usize = 8;
+
+/// Which columns of a table are compared, in words.
+fn columns(numbers: &Numbers) -> String {
+    let names: Vec<&str> = numbers.iter().map(|(name, _)| name.as_str()).collect();
+    match names.as_slice() {
+        [first, .., last] if names.len() > MOST_NAMED => format!(" ({first} to {last})"),
+        few => format!(" ({})", few.join(", ")),
     }
 }
 

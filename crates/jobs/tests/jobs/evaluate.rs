@@ -124,9 +124,10 @@ fn contract_a_design_beyond_a_limit_is_infinite_or_reported_by_how_much() {
     assert_eq!((values.len(), values[1]), (2, f64::INFINITY));
     let said = answers(&study, true, None, designs);
     let told: Vec<Value> = said.iter().map(|line| serde_json::from_str(line).expect("JSON")).collect();
-    assert_eq!(told[0], json!({ "E1max": values[0], "violation": 0.0, "cavity": 0.16 }));
+    assert_eq!(told[0], json!({ "E1max": values[0], "violation": 0.0, "reached": { "cavity": 0.16 } }));
     assert!(said[0].contains("\"violation\": 0.0,"), "{said:?}");
-    let [energy, violation, cavity] = ["E1max", "violation", "cavity"].map(|name| told[1][name].as_f64());
+    let [energy, violation] = ["E1max", "violation"].map(|name| told[1][name].as_f64());
+    let cavity = told[1]["reached"]["cavity"].as_f64();
     assert!(energy.is_some_and(|energy| energy < 1e4), "an energy, not a rank: {said:?}");
     assert!(violation.is_some_and(|violation| (violation - 1.0).abs() < 1e-12), "twice the cavity: {said:?}");
     assert_eq!(cavity, Some(0.4));
@@ -139,4 +140,18 @@ fn contract_a_study_that_tunes_nothing_has_no_value_to_answer_with() {
     let (answers, _, end) = said(&study, false, None, "215 232 0.06 0.34\n");
     assert!(matches!(refused(end), Error::Rule { rule: Rule::NoOptimize, .. }));
     assert!(answers.is_empty(), "{answers:?}");
+}
+
+/// The value is that of the window, what a limit is on that of the whole run: both have the same name.
+#[test]
+fn contract_a_value_and_what_its_limit_is_on_are_told_apart() {
+    let mut study = tiny();
+    study["optimize"]["limits"] = json!({ "E1max": 1e9, "from": 0.0 });
+    let said = answers(&study, true, None, "215 232 0.06 0.34\n");
+    assert_eq!(said[0].matches("E1max").count(), 2, "{said:?}");
+    let told: Value = serde_json::from_str(&said[0]).expect("JSON");
+    let [own, reached] = [&told["E1max"], &told["reached"]["E1max"]].map(Value::as_f64);
+    let alone: f64 = answers(&study, false, None, "215 232 0.06 0.34\n")[0].parse().expect("a number");
+    assert_eq!(own, Some(alone));
+    assert!(reached >= own, "{said:?}");
 }

@@ -16,6 +16,7 @@ mod limits;
 mod links;
 mod losses;
 mod motions;
+mod own_structures;
 mod paper;
 mod prove;
 mod quantity;

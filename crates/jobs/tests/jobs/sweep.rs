@@ -165,7 +165,7 @@ fn contract_verify_runs_points_again_and_sees_a_changed_number() {
     good(verify(&desk.path("whole"), 3, 0.0, &record));
     let said = record.results();
     assert!(
-        said.contains("sweep.csv              3 of 7 rows run again: the same to the last bit"),
+        said.contains("sweep.csv              3 of 7 rows run again (omega to transmissibility_none): the same to the last bit"),
         "{said}"
     );
     let text = desk.read("whole/sweep.csv");
@@ -174,5 +174,5 @@ fn contract_verify_runs_points_again_and_sees_a_changed_number() {
     let record = Record::default();
     assert!(matches!(refused(verify(&desk.path("whole"), 3, 0.0, &record)), Error::NotHeld { .. }));
     let said = record.results();
-    assert!(said.contains("3 of 7 rows run again: 1 differs"), "{said}");
+    assert!(said.contains("3 of 7 rows run again (omega to transmissibility_none): 1 differs"), "{said}");
 }

@@ -37,14 +37,14 @@ fn contract_results_are_verified_to_the_last_bit() {
     let said = holds(&desk, "out", 7);
     let lines: Vec<&str> = said.lines().collect();
     assert_eq!(lines[0], "  15 files as they were made");
-    assert_eq!(lines[1], "  surf.csv               7 of 24 rows run again: the same to the last bit");
+    assert_eq!(lines[1], "  surf.csv               7 of 24 rows run again (E1max): the same to the last bit");
     assert!(lines[2].starts_with("  fminsearch.csv         7 of "), "{said}");
     assert!(lines[3].starts_with("  fminsearch-starts.csv  7 of "), "{said}");
     assert_eq!(lines[4], "  optimum.json           its design made again: the same to the last bit");
     assert_eq!(lines[5], "  certificate.json       all of it made again: the same to the last bit");
     assert_eq!(lines[6], "holds: every file is as it was made, and all that was run or made again agrees");
     let all = holds(&desk, "out", 1000);
-    assert!(all.contains("  surf.csv               24 of 24 rows run again: the same"), "{all}");
+    assert!(all.contains("  surf.csv               24 of 24 rows run again (E1max): the same"), "{all}");
 }
 
 #[test]
@@ -60,7 +60,7 @@ fn contract_a_changed_row_is_found_by_hash_and_by_value() {
         "1 differs, by at most 1.0e-6 of its value: E1max in row 5 is {other:e}, now {:e}",
         energy.parse::<f64>().expect("a number")
     );
-    let line = format!("  surf.csv               24 of 24 rows run again: {differs}");
+    let line = format!("  surf.csv               24 of 24 rows run again (E1max): {differs}");
     assert!(said.lines().any(|other| other == line), "{said}");
     let hash = "does not hold: surf.csv is not as it was made";
     assert_eq!(end, End::Not(format!("{hash}; surf.csv, {differs}")));
@@ -88,7 +88,7 @@ fn contract_a_band_and_a_directory_of_results_are_verified() {
     let said = holds(&desk, "all", 4);
     let place = |name: &str| format!("{}:\n", desk.path(name).display());
     assert!(said.starts_with(&place("all/band")), "{said}");
-    assert!(said.contains("\n  band.csv               4 of 17 rows run again: the same"), "{said}");
+    assert!(said.contains("\n  band.csv               4 of 17 rows run again (E1max_none, E1max_study, E1max_tuned): the same"), "{said}");
     assert!(said.contains(&format!("\n{}", place("all/inner/one"))), "{said}");
 }
 
@@ -190,7 +190,7 @@ fn contract_results_that_break_their_limits_are_verified() {
     let error = refused(table.check_limits());
     assert!(matches!(&error, Error::Infeasible { name, .. } if name == "study"), "{error}");
     let said = holds(&desk, "table", 20);
-    let line = "  table2.csv             2 of 2 rows run again: the same to the last bit";
+    let line = "  table2.csv             2 of 2 rows run again (E1max, stroke, contact_force, x1max, a1max, ground_force): the same to the last bit";
     assert!(said.contains(line), "{said}");
 }
 

@@ -41,6 +41,12 @@ pub struct Needs {
 const PER_WIDTH: f64 = 8.0;
 const MOST: f64 = 1601.0;
 
+/// How often the search of the best linear damper is begun again at its end, where it gains this share each time.
+const RESTARTS: u32 = 4;
+const GAIN: f64 = 1e-4;
+/// The share of critical damping below which it has none.
+const NONE: f64 = 1e-9;
+
 impl Goal {
     /// What a scene needs by this goal, regardless of its limits, as long as `proceed` says so. Peaks between samples are searched, as those
     /// of the quantity are.
@@ -148,8 +154,8 @@ impl Goal {
     /// The damper of the same mass without walls that this goal is smallest for, regardless of limits and bounds; none where the goal says
     /// nothing of the structure, or there is no such damper to start from.
     ///
-    /// A search by the closed form of the steady motion begins at Den Hartog's tuning; one by the goal itself follows, unless that has
-    /// an ensemble.
+    /// A search by the closed form of the steady motion, over the band if there is one, begins at Den Hartog's tuning; one by the goal itself follows,
+    /// unless that has an ensemble. One that has stopped in a kink is begun again there.
     pub fn best_linear(&self, scene: &Scene, settings: &Settings) -> Option<Scene> {
         let damper = scene.damper?;
         let quantity = self.objective.quantity();
@@ -177,12 +183,22 @@ impl Goal {
                 bounds: vec![Bounds { lower: Some(0.0), upper: None }; 2],
             };
             let value = |x: &[f64], cutoff: f64| objective.value(x, cutoff);
-            let found = minimize(value, &start, options, |_| ControlFlow::Continue(())).ok()?;
+            let from =
+                |start: &[f64]| minimize(value, start, options.clone(), |_| ControlFlow::Continue(())).ok();
+            let mut found = from(&start)?;
+            // A simplex may stop in a kink. In closed form another costs little.
+            for _ in 0..if objective.goal().objective.is_steady() { RESTARTS } else { 0 } {
+                let again = from(&found.x)?;
+                if again.value >= (1.0 - GAIN) * found.value {
+                    break;
+                }
+                found = again;
+            }
             <[f64; 2]>::try_from(found.x).ok()
         };
-        let closed = self.objective.terms().iter().all(|(_, term)| term.omega.is_some());
+        let banded = self.objective.terms().iter().all(|(_, term)| term.omega.is_some());
         let mut best = den_hartog(&scene.primary, damper.mass.get());
-        if closed {
+        if banded || self.objective.is_steady() {
             let steady = |term: &mut Objective| (term.response, term.ensemble) = (Response::Steady, None);
             best = search(best, &steady)?;
         }
@@ -196,6 +212,10 @@ impl Goal {
                 }
             };
             best = search(best, &own)?;
+        }
+        let critical = 2.0 * (best[0] * damper.mass.get()).sqrt();
+        if best[1] < NONE * critical {
+            best[1] = 0.0;
         }
         let [stiffness, damping] = best.map(NonNegative::new);
         let damper = Damper { stiffness: stiffness.ok()?, damping: damping.ok()?, ..plain };

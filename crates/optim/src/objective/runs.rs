@@ -169,6 +169,9 @@ impl<'a> Runs<'a> {
             let Worst { value: stroke, frequency: omega } = worst;
             let gaps = damper.rest_distance.get().min(damper.clearance.get());
             let room = if damper.contact.is_some() { gaps } else { f64::INFINITY };
+            if stroke.is_infinite() {
+                return Err(Unusable::Resonates { omega });
+            }
             if stroke >= room {
                 return Err(Unusable::Touches { omega, stroke, room });
             }

@@ -52,6 +52,14 @@ pub enum Unusable {
         /// The end of the run, s.
         to: f64,
     },
+    /// There is no steady motion: nothing damps a resonance.
+    #[error(
+        "it has no steady motion: nothing damps its resonance at omega = {omega} rad/s; give c1 or c2, or a band without it"
+    )]
+    Resonates {
+        /// Where, rad/s.
+        omega: f64,
+    },
     /// The steady motion reaches a wall, so that it is not linear.
     #[error(
         "the damper reaches a wall: its steady stroke at omega = {omega} rad/s is {stroke} m, of which D and C leave {room} m; \

@@ -138,7 +138,7 @@ fn contract_verify_exits_with_0_1_or_4() {
     let verify = || desk.run(&["verify", "out", "--sample", "3"]);
     let Answer { code, stdout, stderr } = verify();
     assert_eq!((code, stderr.as_str()), (Some(0), ""));
-    let rows = "  surf.csv               3 of 24 rows run again: the same to the last bit\n";
+    let rows = "  surf.csv               3 of 24 rows run again (E1max): the same to the last bit\n";
     let end = "holds: every file is as it was made, and all that was run or made again agrees\n";
     assert!(stdout.contains(rows) && stdout.ends_with(end), "{stdout}");
 

@@ -4,6 +4,9 @@ use retune_optim::{Limit, Limits, PerLimit};
 use retune_study::short;
 use serde::Serialize;
 
+/// The share by which rounding may exceed a limit.
+const ROUNDING: f64 = 1e-12;
+
 /// Which limits are broken, where the study has any.
 #[derive(Clone, Debug, Serialize)]
 pub struct Kept {
@@ -78,7 +81,13 @@ impl Excess {
     fn new(limits: &Limits, limit: Limit, reached: &PerLimit<f64>, at: &str) -> Option<Self> {
         let (allowed, reached) = (limits.get(limit)?, reached.get(limit));
         let over_percent = 100.0 * (reached / allowed - 1.0);
-        (over_percent > 0.0).then(|| Self { limit, allowed, reached, over_percent, at: at.to_owned() })
+        (reached > (1.0 + ROUNDING) * allowed).then(|| Self {
+            limit,
+            allowed,
+            reached,
+            over_percent,
+            at: at.to_owned(),
+        })
     }
 }
 

@@ -77,10 +77,13 @@ pub struct Measured {
     /// The limits at the design and near it, where the study has any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limits: Option<Kept>,
+    /// Whether the damper can strike: no other motion is chaotic.
+    #[serde(skip)]
+    pub has_walls: bool,
     /// The run with the largest value that the value is made of.
     pub worst_run: WorstRun,
     pub convergence: Vec<Run>,
-    /// The objective with four times the samples of its bands, where it has bands that are sampled.
+    /// The objective with four times the samples of its bands and ranges, where it has any that are sampled.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub finer: Option<f64>,
     pub motion: Motion,
@@ -106,11 +109,11 @@ impl Run {
 }
 
 impl Motion {
-    /// A motion that has no periods to classify it by: a free decay, or what a pulse or a record leaves, as `regime` says.
-    pub fn decay(regime: &str) -> Self {
+    /// A motion that has no periods to classify it by: a free decay, what a pulse or a record leaves, or a random one, as `regime` and `sentence` say.
+    pub fn without_period(regime: &str, sentence: &str) -> Self {
         Self {
             regime: regime.to_owned(),
-            sentence: "dies out".to_owned(),
+            sentence: sentence.to_owned(),
             irregular: false,
             exponent: f64::NAN,
             exponent_error: f64::NAN,

@@ -3,25 +3,34 @@
 use super::verdict::{NONE, between, or_none};
 use super::{Certificate, FINER, Measured, Motion, Neighbourhood, Run, Sensitivity, WorstRun};
 use crate::amount::Amount;
-use retune_study::short;
+use retune_study::{rounded, short};
 
 impl Certificate {
-    /// The verdict with the error bar; on a line of its own what other walls do.
+    /// The verdict with the error bar; on lines of their own what other records and other walls do.
     pub(crate) fn verdict_words(&self) -> String {
+        let records = self.records.iter().map(|records| format!("\nRecords: {}", records.words()));
         let contacts = self.walls.iter().map(|walls| format!("\nContacts: {}", walls.words()));
-        format!("{} ({}){}", self.reason(), self.compared(), contacts.collect::<String>())
+        format!("{} ({}){}", self.reason(), self.compared(), records.chain(contacts).collect::<String>())
     }
 
     /// The lines of its short form.
     pub(crate) fn lines(&self) -> Vec<String> {
         let Motion { regime, exponent, .. } = &self.measured.motion;
         let contacts = self.walls.iter().map(|walls| format!("Contacts: {}", walls.words()));
-        let last = format!(
-            "{}, {regime}, largest Lyapunov exponent {exponent:.3} /s at the worst run",
-            self.compared()
-        );
+        let exponent = match exponent.is_finite() {
+            true => format!(", largest Lyapunov exponent {exponent:.3} /s at the worst run"),
+            false => String::new(),
+        };
+        let last = format!("{}, {regime}{exponent}", self.compared());
         [format!("certificate: {}", self.reason())].into_iter().chain(contacts).chain([last]).collect()
     }
+}
+
+/// A number to ten decimals, a small one to as many significant digits.
+fn all_digits(value: f64) -> String {
+    let small = value.abs() < 1.0 && value != 0.0;
+    let decimals = if small { (9.0 - value.abs().log10().floor()) as usize } else { 10 };
+    format!("{value:.decimals$}")
 }
 
 impl std::fmt::Display for Certificate {
@@ -42,7 +51,8 @@ impl std::fmt::Display for Certificate {
         writeln!(f, "worst run     {} at {omega}k1 = {k1} N/m{phase}", said(value.value))?;
         for Run { method, rtol, value } in &measured.convergence {
             let (method, value) = (format!("{} {rtol:e}", method.name()), value.value);
-            let digits = if value.is_finite() { format!("{value:.10} {unit}") } else { NONE.to_owned() };
+            let digits =
+                if value.is_finite() { format!("{} {unit}", all_digits(value)) } else { NONE.to_owned() };
             writeln!(f, "  {method:<14}{digits}")?;
         }
         if let Some(finer) = measured.finer.map(said) {
@@ -60,16 +70,23 @@ impl std::fmt::Display for Certificate {
         if let Some(margin) = &measured.margin {
             writeln!(f, "margin        {}", margin.words())?;
         }
-        writeln!(f, "exponent      {exponent:.4} ± {exponent_error:.4} /s, the largest Lyapunov exponent")?;
-        writeln!(
-            f,
-            "contacts      {a:.2} on the structure, {b:.2} on the obstacle in a period of the force"
-        )?;
+        if exponent.is_finite() {
+            writeln!(
+                f,
+                "exponent      {exponent:.4} ± {exponent_error:.4} /s, the largest Lyapunov exponent"
+            )?;
+            writeln!(
+                f,
+                "contacts      {a:.2} on the structure, {b:.2} on the obstacle in a period of the force"
+            )?;
+        }
         writeln!(f, "parameter     {:<25}worst within 1 %", format!("slope, {unit} for 1 % more"))?;
         for Sensitivity { parameter, slope_per_percent, worst, worst_at_percent, .. } in &measured.sensitivity
         {
             let known = slope_per_percent.is_finite();
-            let slope = if known { format!("{slope_per_percent:+.4}") } else { NONE.to_owned() };
+            let sign = if *slope_per_percent > 0.0 { "+" } else { "" };
+            let slope =
+                if known { format!("{sign}{}", rounded(*slope_per_percent, 4)) } else { NONE.to_owned() };
             writeln!(f, "  {parameter:<12}{slope:<25}{} at {worst_at_percent:+} %", said(*worst))?;
         }
         let Neighbourhood { members, errors, low, median, high } = neighbourhood;

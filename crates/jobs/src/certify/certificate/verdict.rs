@@ -142,12 +142,15 @@ fn wide_finding(own: Amount, error_bar: f64, predictable: bool, all: &Measured) 
         return None;
     }
     let near = near(&all.neighbourhood, quantity);
-    let (verdict, alone) = if all.motion.irregular || !predictable {
+    let (verdict, alone) = if all.has_walls && (all.motion.irregular || !predictable) {
         let width = measured(width.max(error_bar), quantity);
         (
             Verdict::SingleChaoticRealisation,
             format!("a single chaotic realisation of a distribution of width {width}: {near}"),
         )
+    } else if !predictable {
+        let apart = measured(error_bar, quantity);
+        (Verdict::Sensitive, format!("sensitive: methods and tolerances differ by {apart}; {near}"))
     } else {
         (Verdict::Sensitive, format!("sensitive: {near}"))
     };
@@ -234,9 +237,15 @@ pub(super) fn between(low: f64, high: f64, quantity: Measure) -> String {
     }
 }
 
-/// The rule in words; `limits` says whether the study has limits.
-pub fn rule(quantity: Measure, limits: bool, Margins { force, errors }: Margins) -> String {
+/// The rule in words; `limits` says whether the study has limits, `walls` whether the damper has: no other is chaotic.
+pub fn rule(quantity: Measure, (limits, walls): (bool, bool), Margins { force, errors }: Margins) -> String {
     let name = quantity.name();
+    let chaotic = if walls {
+        "single chaotic realisation: wide, and the motion of the worst run is irregular (chaotic, through a chaotic transient, or without a period) or not \
+         predictable; "
+    } else {
+        ""
+    };
     let limits = if limits {
         ", or a neighbour, 1 % of one parameter, or a sample more of the band breaks a limit; no verdict: the design itself breaks one"
     } else {
@@ -249,8 +258,7 @@ pub fn rule(quantity: Measure, limits: bool, Margins { force, errors }: Margins)
         100.0 * errors
     );
     format!(
-        "wide: the difference of methods, or the width of the middle 90 % of the neighbours, is above {} % of {name}; single chaotic realisation: wide, and the \
-         motion of the worst run is irregular (chaotic, through a chaotic transient, or without a period) or not predictable; sensitive: \
+        "wide: the difference of methods, or the width of the middle 90 % of the neighbours, is above {} % of {name}; {chaotic}sensitive: \
          wide, or 1 % of one parameter raises {name} by more than {} %; from rest only: none of these, but a motion from \
          another start or between the samples has {} % more; {edge}; robust: none of these. predictable: methods differ by at \
          most {} % of the worst run's {name}",

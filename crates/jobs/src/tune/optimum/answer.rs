@@ -73,7 +73,8 @@ impl Optimum {
 
     /// What to do next with the results in `out`.
     pub fn next(&self, out: &Path) -> String {
-        let single = self.objective.as_ref().is_none_or(|goal| goal.band().is_none());
+        let single =
+            self.simulation.omega() > 0.0 && self.objective.as_ref().is_none_or(|goal| goal.band().is_none());
         if self.certificate.judged.verdict == Some(Verdict::SingleChaoticRealisation) && single {
             return "next: give the study a band (`optimize.objective.omega`, docs/tuning.md): at this\n  \
                     frequency alone the value is one of many that practically equal designs have"
@@ -110,12 +111,14 @@ impl Optimum {
             None if self.simulation.omega() == 0.0 => String::new(),
             None => format!(" at omega = {}", frequency(self.simulation.omega())),
         };
-        format!("{}: {} {}{at}", self.damper_type, self.value.quantity.name(), self.value.words())
+        let sum = if self.of.objective().sum.is_empty() { "" } else { "weighted sum of " };
+        format!("{}: {sum}{} {}{at}", self.damper_type, self.value.quantity.name(), self.value.words())
     }
 
     /// The structure without a damper, and with the damper that the study began with.
     fn compared(&self) -> String {
         let times = |other: Amount| match other.value.is_finite() {
+            true if self.value.value == 0.0 => other.words(),
             true => format!("{} ({})", other.words(), as_much(other.value / self.value.value)),
             false => "without bound".to_owned(),
         };

@@ -56,9 +56,15 @@ fn words(findings: &Findings) -> Table {
         motion.regime.clone(),
         "nT, m, k: it repeats after n periods of the force, with m impacts on the structure and k on the obstacle",
     );
-    row("impacts on the structure", digits(structure, 3), "in a period of the force, once settled");
-    row("impacts on the obstacle", digits(obstacle, 3), "in a period of the force, once settled");
-    row("largest Lyapunov exponent", format!("{exponent} /s"), "below zero, neighbouring motions converge");
+    if motion.exponent.is_finite() {
+        row("impacts on the structure", digits(structure, 3), "in a period of the force, once settled");
+        row("impacts on the obstacle", digits(obstacle, 3), "in a period of the force, once settled");
+        row(
+            "largest Lyapunov exponent",
+            format!("{exponent} /s"),
+            "below zero, neighbouring motions converge",
+        );
+    }
     row(
         "stroke",
         millimetres(response.spring_deflection_max),
