@@ -47,7 +47,10 @@ pub(super) fn other_records(study: &Study, own: Amount) -> Option<Records> {
     // A stationary motion is that of the spectrum, whatever is drawn of it.
     study.scene.forcing.history().filter(|_| !study.objective().is_stationary())?;
     let draws = (1..=DRAWS).map(Another::Draw);
-    let changes: Vec<Another> = [Another::Sign, Another::Samples].into_iter().chain(draws).collect();
+    // What strikes no wall has the same values under the other sign.
+    let has_walls = study.scene.damper.is_some_and(|damper| damper.contact.is_some());
+    let sign = has_walls.then_some(Another::Sign);
+    let changes: Vec<Another> = sign.into_iter().chain([Another::Samples]).chain(draws).collect();
     let under: Vec<Changed> = changes.into_par_iter().filter_map(|change| under(study, change)).collect();
     (!under.is_empty()).then(|| Records::new(own, under))
 }
