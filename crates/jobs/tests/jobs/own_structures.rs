@@ -33,7 +33,7 @@ fn tower(objective: Value) -> Value {
     let primary = json!({ "m1": 20000, "c1": 376.991, "k1": 197_392.088 });
     let damper = json!({ "m2": 200, "k2": 1932.5, "c2": 0.6 });
     let bounds = json!({ "k2": [100, 1e4], "c2": [0.5, 1000] });
-    tmd(&primary, 3.141_592_65, &damper, &Value::Object(all), &bounds)
+    tmd(&primary, std::f64::consts::PI, &damper, &Value::Object(all), &bounds)
 }
 
 #[test]
