@@ -1,13 +1,9 @@
 //! What the contacts of a motion are like: how fast, how deep and how long.
 
-use crate::error::SolverError;
 use crate::motion::segment::Segment;
 use crate::observe::falls::falls;
-use crate::observe::observer::{Observer, Unobserved};
-use crate::plan::{Plan, Request};
-use crate::run::Follow;
-use crate::settings::{Settings, Window};
-use retune_model::{Coupled, Scene, Side};
+use crate::observe::observer::Observer;
+use retune_model::{Coupled, Side};
 
 /// The contacts with one wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,23 +24,6 @@ impl Collisions {
     /// No contact.
     pub(crate) const NONE: Self =
         Self { count: 0, speed: 0.0, indentation: 0.0, shortest: f64::INFINITY, longest: 0.0 };
-}
-
-/// The contacts with the structure and with the obstacle in a window of the run of a scene from its start.
-///
-/// # Errors
-/// [`SolverError`] with the time reached.
-pub fn collisions(
-    scene: &Scene,
-    window: Window,
-    settings: &Settings,
-) -> Result<[Collisions; 2], SolverError> {
-    let Some(damper) = &scene.damper else { return Ok([Collisions::NONE; 2]) };
-    let system = Coupled::new(&scene.primary, &scene.forcing, damper);
-    let mut touched = Touched::new(&system);
-    let plan = Plan::of(&system, settings, Request::Motion);
-    system.follow(plan, window, settings, &mut Unobserved, &mut touched)?;
-    Ok(touched.walls)
 }
 
 /// Watches contacts.

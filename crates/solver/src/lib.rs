@@ -63,14 +63,14 @@ mod tangent;
 mod trajectory;
 
 pub use budget::{Budget, Pace};
-pub use collisions::{Collisions, collisions};
+pub use collisions::Collisions;
 pub use decay::{LEFT, decay_time, last_above};
 pub use derivatives::{extremes_by, settled_by};
 pub use error::{Remedy, SolverError};
 pub use extremes::{Also, Ask, Extremes, extremes};
 pub use hybrid::propagator::{Hybrid, Motion, Phase};
 pub use linear::steps;
-pub use losses::{Losses, losses};
+pub use losses::Losses;
 pub use recurrence::test::Settle;
 pub use response::{Extreme, Response, SceneKind, StructureMaxima, Work};
 pub use run::{Follower, least_steps, leaves_out_a_fast_part};

@@ -1,14 +1,10 @@
 //! Where the energy of a motion goes: into the dashpot of the structure, that of the damper, and impacts.
 
 use crate::contact::collocation::quadrature::gauss;
-use crate::error::SolverError;
 use crate::motion::knot::Knot;
 use crate::motion::segment::Segment;
-use crate::observe::observer::{Impact, Observer, Unobserved};
-use crate::plan::{Plan, Request};
-use crate::run::Follow;
-use crate::settings::{Settings, Window};
-use retune_model::{Bare, Coupled, Scene};
+use crate::observe::observer::{Impact, Observer};
+use retune_model::{Bare, Coupled};
 
 /// Nodes of Gauss's rule on a segment. In a step of the exact flow, and of a contact, the fastest motion turns by at most 1.25 and 1.5 rad, over which
 /// the rule is exact to rounding; in one of a held contact by 3, over which it is to 1e-10.
@@ -30,28 +26,6 @@ impl Losses {
     pub fn total(&self) -> f64 {
         self.structure + self.damper + self.impacts
     }
-}
-
-/// The energy that the motion of a scene loses in a window of the run from its start, J.
-///
-/// # Errors
-/// [`SolverError`] with the time reached.
-pub fn losses(scene: &Scene, window: Window, settings: &Settings) -> Result<Losses, SolverError> {
-    match &scene.damper {
-        None => of_system(&Bare::new(&scene.primary, &scene.forcing), window, settings),
-        Some(damper) => of_system(&Coupled::new(&scene.primary, &scene.forcing, damper), window, settings),
-    }
-}
-
-fn of_system<S: Loses<N> + Follow<N>, const N: usize>(
-    system: &S,
-    window: Window,
-    settings: &Settings,
-) -> Result<Losses, SolverError> {
-    let mut lost = Lost::new(system);
-    let plan = Plan::of(system, settings, Request::Motion);
-    system.follow(plan, window, settings, &mut Unobserved, &mut lost)?;
-    Ok(lost.all())
 }
 
 /// A system that loses energy.

@@ -7,7 +7,7 @@ use crate::{Error, columns};
 use retune_model::{Design, Parameter};
 use retune_report::cells;
 use retune_report::table::{Cell, Table};
-use retune_solver::{collisions, losses};
+use retune_solver::simulate_in_detail;
 use retune_study::{Rule, Setting, Study};
 use std::path::Path;
 
@@ -68,8 +68,8 @@ impl Point {
         let (settings, window) = (alone.solver.settings(), alone.window.window());
         let found = alone.goal().evaluate(&scene, &settings, f64::INFINITY)?;
         let run = found.worst_run(scene, &alone.goal());
-        let powers = Powers::new(losses(&run, window, &settings)?, window.to - window.from).parts();
-        let walls = collisions(&run, window, &settings)?;
+        let (_, lost, walls) = simulate_in_detail(&run, window, &settings)?;
+        let powers = Powers::new(lost, window.to - window.from).parts();
         let impact_speed = walls.iter().map(|wall| wall.speed).fold(0.0, f64::max);
         let omega = run.forcing.frequency.get();
         Ok(Self { restitution, design, value: found.value, omega, powers, impact_speed })

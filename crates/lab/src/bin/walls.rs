@@ -7,7 +7,7 @@ use retune_model::{Contact, Damper, Loss, Parameter, Positive, Restitution, Scen
 use retune_report::colour::{BLACK, BLUE, VERMILION};
 use retune_report::table::Table;
 use retune_report::{Axis, Shape, cells};
-use retune_solver::collisions;
+use retune_solver::simulate_in_detail;
 use retune_study::{Setting, Study, read};
 use retune_testkit::scenes::rigid;
 use std::fs;
@@ -82,7 +82,7 @@ fn worst(study: &Study, scene: &Scene) -> Any<f64> {
 fn impact_speed(study: &Study) -> Any<Positive> {
     let (goal, settings) = (study.goal(), study.solver.settings());
     let run = goal.evaluate(&study.scene, &settings, f64::INFINITY)?.worst_run(study.scene, &goal);
-    let walls = collisions(&run, study.window.window(), &settings)?;
+    let (_, _, walls) = simulate_in_detail(&run, study.window.window(), &settings)?;
     Ok(Positive::new(walls.iter().map(|wall| wall.speed).fold(0.0, f64::max))?)
 }
 

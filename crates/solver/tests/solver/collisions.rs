@@ -2,9 +2,16 @@
 
 use crate::forcings::decay;
 use crate::problems::assert_close;
-use retune_model::{Finite, Side, Start};
-use retune_solver::{Method, Moment, Rows, Settings, Window, collisions, simulate, trajectory};
+use retune_model::{Finite, Scene, Side, Start};
+use retune_solver::{
+    Collisions, Method, Moment, Rows, Settings, Window, simulate, simulate_in_detail, trajectory,
+};
 use retune_testkit::scenes::{LOSSY, Numbers, SSVI, TWO_SIDED};
+
+fn contacts(scene: &Scene, window: Window, settings: &Settings) -> [Collisions; 2] {
+    let (_, _, walls) = simulate_in_detail(scene, window, settings).expect("a run");
+    walls
+}
 
 /// An undisturbed Hertz collision at the speed v: `z = (5 μ v² / (4 K))^(2/5)` with the effective mass μ, and 2.9432751 z/v long
 /// (Johnson, p. 353).
@@ -16,7 +23,7 @@ fn exact_the_undisturbed_collision() {
         let start = Start { x2: Some(number(0.1)), v2: number(-speed), ..Start::default() };
         let scene = decay(free, start);
         let window = Window { from: 0.0, to: 0.1 / speed + 0.2 / speed };
-        let [structure, obstacle] = collisions(&scene, window, &Settings::default()).expect("a run");
+        let [structure, obstacle] = contacts(&scene, window, &Settings::default());
         let system = free.coupled();
         let stiffness = system.hertz(Side::Primary);
         let depth = (1.25 * speed * speed / system.inverse_effective_mass() / stiffness).powf(0.4);
@@ -45,8 +52,7 @@ fn reference_the_events_of_a_trajectory() {
             }
         })
         .expect("a run");
-        let run = simulate(&scene, window, &settings).expect("a run");
-        let found = collisions(&scene, window, &settings).expect("a run");
+        let (run, _, found) = simulate_in_detail(&scene, window, &settings).expect("a run");
         assert!(run.impacts[0] > 5, "{run:?}");
         for side in Side::BOTH {
             let (i, wall) = (side as usize, found[side as usize]);
@@ -64,10 +70,10 @@ fn reference_general_methods_see_contacts_as_long() {
     let window = Window { from: 0.0, to: 5.0 };
     for numbers in [SSVI, LOSSY] {
         let scene = numbers.scene();
-        let found = collisions(&scene, window, &Settings::default()).expect("a run");
+        let found = contacts(&scene, window, &Settings::default());
         for method in [Method::Dop853, Method::Ode45] {
             let general = Settings { method, rtol: 1e-11, ..Settings::default() };
-            let other = collisions(&scene, window, &general).expect("a run");
+            let other = contacts(&scene, window, &general);
             for (a, b) in found.iter().zip(&other) {
                 assert_eq!(a.count, b.count, "{method:?}");
                 assert_close(b.indentation, a.indentation, 1.0, 1e-8, "indentation");
@@ -88,7 +94,7 @@ fn reference_contacts_in_which_the_force_turns() {
     for numbers in [soft, Numbers { lambda: 0.4, ..soft }, Numbers { e: 0.5, ..soft }] {
         let scene = numbers.scene();
         let turns = |longest: f64| numbers.omega * longest;
-        let walls = collisions(&scene, window, &Settings::default()).expect("a run");
+        let walls = contacts(&scene, window, &Settings::default());
         assert!(walls.iter().all(|wall| turns(wall.longest) > 1.0), "{walls:?}");
         let run = simulate(&scene, window, &Settings::default()).expect("a run");
         let general = Settings { method: Method::Dop853, rtol: 1e-13, ..Settings::default() };

@@ -3,12 +3,17 @@
 use crate::forcings::decay;
 use nalgebra::Complex;
 use retune_model::{Amplitude, Bare, Coupled, Finite, Scene, Start};
-use retune_solver::{Losses, Settings, Window, losses, simulate};
+use retune_solver::{Losses, Settings, Window, simulate_in_detail};
 use retune_testkit::scenes::{LOSSY, Numbers, SSVI, TMD, TWO_SIDED};
 use std::f64::consts::TAU;
 
 fn tight() -> Settings {
     Settings { rtol: 1e-13, ..Settings::default() }
+}
+
+fn lost_in(scene: &Scene, window: Window) -> Losses {
+    let (_, lost, _) = simulate_in_detail(scene, window, &tight()).expect("a run");
+    lost
 }
 
 /// What a free decay has lost is what is missing from its energy; without loss impacts take nothing.
@@ -20,16 +25,15 @@ fn exact_a_free_decay_loses_what_is_missing() {
         let scene = decay(numbers, start);
         let system = Coupled::new(&scene.primary, &scene.forcing, &scene.damper.expect("a damper"));
         let window = Window { from: 0.0, to: 12.0 };
-        let end = simulate(&scene, window, &tight()).expect("a run").final_state;
-        let [before, after] = [system.start(), end].map(|y| system.total_energy(&y));
-        let lost = losses(&scene, window, &tight()).expect("a run");
+        let (run, lost, _) = simulate_in_detail(&scene, window, &tight()).expect("a run");
+        let [before, after] = [system.start(), run.final_state].map(|y| system.total_energy(&y));
         // Observers see a collision without loss to ten digits, one with loss to all.
         let allowed = if numbers.lambda > 0.0 { 1e-13 } else { 1e-10 };
         let error = (lost.total() - (before - after)).abs() / before;
         assert!(error < allowed, "{error:e} of {numbers:?}");
         assert!(lost.structure > 0.0 && lost.damper > 0.0 && (lost.impacts > 0.0) == (numbers.lambda > 0.0));
-        let parts = [Window { from: 0.0, to: 5.0 }, Window { from: 5.0, to: 12.0 }]
-            .map(|part| losses(&scene, part, &tight()).expect("a run"));
+        let parts =
+            [Window { from: 0.0, to: 5.0 }, Window { from: 5.0, to: 12.0 }].map(|part| lost_in(&scene, part));
         for part in
             [|lost: &Losses| lost.structure, |lost: &Losses| lost.damper, |lost: &Losses| lost.impacts]
         {
@@ -54,7 +58,7 @@ fn exact_powers_of_a_steady_motion() {
             let power = |damping: f64, amplitude: Complex<f64>| {
                 0.5 * damping * (TMD.omega * amplitude).norm_sqr() * 10.0 * period
             };
-            let lost = losses(&scene, window, &tight()).expect("a run");
+            let lost = lost_in(&scene, window);
             let structure = power(TMD.c1, steady.x1 - base);
             assert!((lost.structure / structure - 1.0).abs() < 1e-10, "{lost:?} {structure}");
             let damper = power(TMD.c2, steady.x2 - steady.x1);
@@ -73,9 +77,8 @@ fn exact_impacts_with_rigid_walls_lose_what_is_missing() {
         let scene = decay(Numbers { rigid: Some(e), ..TWO_SIDED }, start);
         let system = Coupled::new(&scene.primary, &scene.forcing, &scene.damper.expect("a damper"));
         let window = Window { from: 0.0, to: 8.0 };
-        let end = simulate(&scene, window, &tight()).expect("a run").final_state;
-        let [before, after] = [system.start(), end].map(|y| system.total_energy(&y));
-        let lost = losses(&scene, window, &tight()).expect("a run");
+        let (run, lost, _) = simulate_in_detail(&scene, window, &tight()).expect("a run");
+        let [before, after] = [system.start(), run.final_state].map(|y| system.total_energy(&y));
         let error = (lost.total() - (before - after)).abs() / before;
         assert!(error < 1e-12 && (lost.impacts > 1e-9) == (e < 1.0), "{e}: {error:e} {lost:?}");
     }
