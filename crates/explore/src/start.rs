@@ -166,8 +166,9 @@ impl Start {
             (optimize.objective, optimize.limits.from) =
                 (Objective { quantity, ..Objective::default() }, None);
         }
-        study.check().map_err(Refused::whole)?;
-        Ok(Self { study: bounded(study)?, file: None, ..self.clone() })
+        let start = Self { study: bounded(study)?, file: None, ..self.clone() };
+        start.with(start.damper_kind()).check().map_err(Refused::whole)?;
+        Ok(start)
     }
 
     /// The study as it was read.

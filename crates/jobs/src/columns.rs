@@ -14,7 +14,9 @@ pub fn column(name: &str) -> Column {
     let is_it = |(known, _): &(&str, &'static str)| {
         name.strip_prefix(known).is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
     };
-    let known = parameters.into_iter().chain(measures).chain(STATE).find(is_it);
+    // `base_acceleration` begins with `base`, too.
+    let known = parameters.into_iter().chain(measures).chain(STATE).filter(is_it);
+    let known = known.max_by_key(|(known, _)| known.len());
     Column::new(name, known.map_or("", |(_, unit)| unit))
 }
 
@@ -56,10 +58,11 @@ mod tests {
             "omega_worst",
             "v1",
             "decay_time",
+            "base_acceleration",
             "place",
         ];
         let table = table(&names);
         let units: Vec<&str> = table.columns.iter().map(|column| &*column.unit).collect();
-        assert_eq!(units, ["N/m", "N/m", "N/m²", "J", "J", "N", "rad/s", "m/s", "s", ""]);
+        assert_eq!(units, ["N/m", "N/m", "N/m²", "J", "J", "N", "rad/s", "m/s", "s", "m/s²", ""]);
     }
 }

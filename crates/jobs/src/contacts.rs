@@ -72,7 +72,10 @@ impl Contacts {
                 impact_speed: speed,
                 indentation,
                 contact_radius: system.contact_radius(indentation),
-                contact_pressure: system.wall_pressure(side, indentation),
+                contact_pressure: match system.is_rigid() {
+                    true => f64::INFINITY,
+                    false => system.wall_pressure(side, indentation),
+                },
                 shortest,
                 longest,
                 known: surfaces.as_ref().map(|surfaces| Known::of(surfaces, side, damper.mass.get())),

@@ -168,6 +168,20 @@ fn by_shares(study: &Study, [from, to]: [f64; 2], most: f64) -> Band {
     Band::joined((0..shares).into_par_iter().map(share).collect())
 }
 
+impl BandProof {
+    /// Whether it proves an E1max of at most `most` (J) at every frequency.
+    ///
+    /// # Errors
+    /// [`Error::NotProven`], where it leaves some out.
+    pub fn holds(&self, most: f64) -> Result<(), Error> {
+        if most.is_infinite() || self.band.left_out.is_empty() {
+            return Ok(());
+        }
+        let why = format!("an E1max of at most {most} J is not proven at every omega");
+        Err(Error::NotProven { name: self.study.clone(), why })
+    }
+}
+
 impl fmt::Display for BandProof {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { study, omega: [from, to], energy, band } = self;

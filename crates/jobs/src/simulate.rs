@@ -2,7 +2,7 @@
 
 use crate::Error;
 use crate::contacts::{Contacts, Powers};
-use crate::summary::Summary;
+use crate::summary::{Summary, digits};
 use retune_model::{Measure, Rms, Stationary};
 use retune_solver::{LEFT, Rows, Sample, decay_time, simulate_in_detail, trajectory};
 use retune_store::{Pending, order::may_write};
@@ -144,16 +144,16 @@ impl std::fmt::Display for Simulation {
         for (measure, value) in means.each() {
             let (name, unit) = (measure.short_name(), measure.unit());
             if value.is_finite() {
-                write!(f, "\n{name:<11} {value:<12.7} {unit}")?;
+                write!(f, "\n{name:<11} {:<12} {unit}", digits(value))?;
             } else {
                 write!(f, "\n{name:<11} without bound")?;
             }
         }
-        write!(
-            f,
-            "\nstationary  under the whole spectrum; the sums of its integral differ by {:.0e}",
-            means.0.error
-        )
+        write!(f, "\nstationary  under the whole spectrum")?;
+        if means.0.error == 0.0 {
+            return Ok(());
+        }
+        write!(f, "; the sums of its integral differ by {:.0e}", means.0.error)
     }
 }
 

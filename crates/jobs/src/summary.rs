@@ -114,7 +114,12 @@ impl std::fmt::Display for MadeBy {
         if objective.is_steady() {
             return write!(f, "steady; Retune {retune}");
         }
-        write!(f, "t0 = {t0} s, T = {end} s; Retune {retune}, {method}, rtol {rtol:e}")?;
+        write!(f, "t0 = {t0} s, T = {end} s; Retune {retune}, {method}")?;
+        // Steps of a fixed length have no tolerance.
+        if matches!(solver.method, Method::Rk4 | Method::Euler) {
+            return Ok(());
+        }
+        write!(f, ", rtol {rtol:e}")?;
         solver.search_rtol.map_or(Ok(()), |search| write!(f, " (search {search:e})"))
     }
 }
@@ -221,7 +226,9 @@ impl std::fmt::Display for Summary {
         } else {
             writeln!(
                 f,
-                "force max   {primary:.3} N on the primary structure, {obstacle:.3} N on the obstacle"
+                "force max   {} N on the primary structure, {} N on the obstacle",
+                newtons(primary),
+                newtons(obstacle)
             )?;
         }
         let (stroke, relative) = (self.spring_deflection_max, self.relative_displacement_max);
@@ -233,7 +240,8 @@ impl std::fmt::Display for Summary {
             writeln!(f, "{name:<12}{:<12} {unit} at t = {time:.4} s", digits(*value))?;
         }
         let Extreme { value, time } = self.response.structure.ground_force;
-        writeln!(f, "ground      {value:<12.3} N at t = {time:.4} s, the largest force on the ground")?;
+        let value = newtons(value);
+        writeln!(f, "ground      {value:<12} N at t = {time:.4} s, the largest force on the ground")?;
         if let (Some(share), Source::Harmonic(of, _)) =
             (self.transmissibility(), self.parameters.forcing.source)
         {
@@ -256,8 +264,13 @@ fn is_small(value: f64) -> bool {
     value != 0.0 && value.abs() < 1e-3
 }
 
+/// A force to three decimals, or, where it is small, to four digits.
+fn newtons(value: f64) -> String {
+    if value != 0.0 && value.abs() < 0.1 { rounded(value, 4) } else { format!("{value:.3}") }
+}
+
 /// A value to seven decimals, or, where it is small, to as many digits.
-fn digits(value: f64) -> String {
+pub(crate) fn digits(value: f64) -> String {
     if is_small(value) { format!("{value:.7e}") } else { format!("{value:.7}") }
 }
 

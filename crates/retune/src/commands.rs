@@ -13,6 +13,7 @@ use retune_jobs::sweep::Points;
 use retune_jobs::tune::Optimum;
 use retune_jobs::{Done, Error, Observer, Request, answer, certify, evaluate, table2, tune, verify};
 use retune_jobs::{fronts, losses, retention};
+use retune_model::Parameter;
 use retune_study as study;
 use std::io::BufReader;
 use std::path::Path;
@@ -140,6 +141,9 @@ fn simulate(arguments: &cli::Simulate) -> Result<(), Error> {
     let mut study = study.with(&arguments.settings)?;
     if let Some(start) = arguments.from {
         study.scene.forcing.begin(start);
+        // Only comparisons of a search begin at rest.
+        let alone = study::Study { optimize: None, ..study.clone() };
+        alone.check().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
     }
     let inputs = [arguments.study.as_path()];
     let trajectory = arguments.trajectory.as_deref();
@@ -152,12 +156,19 @@ fn simulate(arguments: &cli::Simulate) -> Result<(), Error> {
 }
 
 fn prove(arguments: &cli::Prove) -> Result<(), Error> {
+    let twice = arguments.settings.iter().any(|setting| setting.what() == Parameter::Omega.into());
+    if arguments.omega.is_some() && twice {
+        let problem = "omega is given by --set, too: give it once".to_owned();
+        return Err(Error::Argument { option: "--omega", problem });
+    }
     let request = arguments.common.request(&arguments.study);
     if let (Some(from), Some(to)) = (arguments.omega, arguments.to) {
         let band = || {
             retune_jobs::prove::prove_band(&arguments.study, &arguments.settings, [from, to], arguments.most)
         };
-        return shown(&request.on_threads(band)?, &arguments.common);
+        let proof = request.on_threads(band)?;
+        shown(&proof, &arguments.common)?;
+        return proof.holds(arguments.most);
     }
     let from = arguments.from.map(|start| (start, usize::from(arguments.periods)));
     let guess = Guess { settings: arguments.settings.clone(), omega: arguments.omega, from };

@@ -224,7 +224,10 @@ fn simulate_coupled(
         structure: maxima(&structure, window),
         impacts,
         force_max,
-        pressure_max: Side::BOTH.map(|side| system.wall_pressure(side, depths[side as usize])),
+        pressure_max: match system.is_rigid() {
+            true => force_max,
+            false => Side::BOTH.map(|side| system.wall_pressure(side, depths[side as usize])),
+        },
         relative_displacement_max,
         spring_deflection_max,
         final_state,

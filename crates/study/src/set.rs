@@ -93,6 +93,11 @@ impl Setting {
         Self { what: what.into(), value }
     }
 
+    /// What is set.
+    pub fn what(&self) -> Settable {
+        self.what
+    }
+
     /// The new value, in the parameter's SI unit.
     pub fn value(&self) -> f64 {
         self.value

@@ -13,6 +13,7 @@ const FAR: f64 = 0.3;
 /// One as near as this is followed to the motions of the branch next to it, where Newton's iteration does not reach it: beside a grazing at a
 /// nearly hard wall it converges only from very near.
 const CLOSE: f64 = 1e-2;
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 impl Branches {
     /// The number of the branch that a motion lies on; none if it is on none.
@@ -52,9 +53,14 @@ impl Branches {
         numbers: Range<usize>,
     ) -> impl Iterator<Item = (usize, &'a [Orbit], DVector<f64>)> + 'a {
         let own = numbers.map(|number| (number, &self.branches[number]));
+        // At an end of the range a value may be off by the rounding of its unknown.
+        let off = move |orbit: &Orbit| {
+            let off = orbit.value - value;
+            if off.abs() <= ROUNDING * value.abs() { 0.0 } else { off }
+        };
         own.filter(|(_, branch)| branch.shooting.periods == shooting.periods).flat_map(
             move |(number, branch)| {
-                let around = move |pair: &&[Orbit]| (pair[0].value - value) * (pair[1].value - value) <= 0.0;
+                let around = move |pair: &&[Orbit]| off(&pair[0]) * off(&pair[1]) <= 0.0;
                 branch.points.windows(2).filter(around).map(move |pair| {
                     let [a, b] = [pair[0].value, pair[1].value];
                     let share = if a == b { 0.0 } else { (value - a) / (b - a) };

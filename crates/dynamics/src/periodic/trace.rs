@@ -163,6 +163,11 @@ fn side(
             match next {
                 Some(next) => break next,
                 None if step < 2.0 * SHORTEST => {
+                    // A parameter that may not be larger leads no step beyond the end of its range.
+                    if let Some(node) = at_end(shooting, &now, range) {
+                        found.push((node.orbit, None));
+                        return (found, End::Range);
+                    }
                     let gap = halves(shooting, &now.solution.x).map_or(f64::INFINITY, |gap| gap.amax());
                     return (found, if gap < JOINED { End::Halved } else { End::Lost });
                 }
@@ -200,6 +205,21 @@ fn ahead(shooting: &Shooting<impl Forced>, now: &Node, step: f64) -> Option<Node
     }
     Node::new(shooting, solution, &now.direction)
         .filter(|node| shooting.inner(&node.direction, &now.direction) > TURN)
+}
+
+/// The share of a range in which a motion is next to its end.
+const NEXT_TO: f64 = 1e-6;
+
+/// The motion at the end of a range that is next to one, which the branch goes to; none if it is not.
+fn at_end(shooting: &Shooting<impl Forced>, now: &Node, [from, to]: [f64; 2]) -> Option<Node> {
+    let last = now.direction.len() - 1;
+    let end = if now.direction[last] > 0.0 { to } else { from };
+    if now.orbit.value == end || (now.orbit.value - end).abs() > NEXT_TO * (to - from) {
+        return None;
+    }
+    let mut guess = now.solution.x.clone();
+    guess[last] = end / shooting.span;
+    located_at(shooting, &guess, now, end)
 }
 
 /// The next motion, or the end of the branch where that comes first; none if it cannot be located.
@@ -270,7 +290,17 @@ fn at_value(shooting: &Shooting<impl Forced>, [now, next]: [&Node; 2], value: f6
     let mut guess = &now.solution.x + (&next.solution.x - &now.solution.x) * share;
     let last = guess.len() - 1;
     guess[last] = value / shooting.span;
-    let mut node = Node::new(shooting, shooting.correct_at_value(&guess)?, &now.direction)?;
+    located_at(shooting, &guess, now, value)
+}
+
+/// The motion at a value, from a guess of it.
+fn located_at(
+    shooting: &Shooting<impl Forced>,
+    guess: &DVector<f64>,
+    now: &Node,
+    value: f64,
+) -> Option<Node> {
+    let mut node = Node::new(shooting, shooting.correct_at_value(guess)?, &now.direction)?;
     node.orbit.value = value;
     node.orbit.seen_anew(shooting)?;
     Some(node)

@@ -58,7 +58,8 @@ impl Motions {
 
     /// Where, to some digits: `omega = 5.98 rad/s`.
     pub(super) fn at(&self, value: f64, digits: usize) -> String {
-        format!("{} = {} {}", self.over().symbol(), rounded(value, digits), self.over().unit())
+        let words = format!("{} = {} {}", self.over().symbol(), rounded(value, digits), self.over().unit());
+        words.trim_end().to_owned()
     }
 
     /// The line below a figure.

@@ -79,6 +79,7 @@ impl Options {
             let value = value.map_err(|problem| refuse(option, problem))?;
             match over.at(study.scene, value) {
                 Ok(_) if value.is_finite() && value > 0.0 => Ok(value),
+                Err(reason) if value > 0.0 => Err(refuse(option, format!("{over}: {reason}"))),
                 _ => Err(refuse(option, format!("{value} {}: give a value above 0", over.unit()))),
             }
         };
@@ -106,7 +107,11 @@ fn default_range(over: Parameter, study: &Study) -> Result<[f64; 2], Error> {
         return Ok([band.from, band.to]);
     }
     match over.of(&study.scene) {
-        Some(own) => Ok([0.8 * own, 1.25 * own]),
+        Some(own) => {
+            let high = 1.25 * own;
+            // No restitution is above 1.
+            Ok([0.8 * own, if over == Parameter::Restitution { high.min(1.0) } else { high }])
+        }
         None => Err(Error::Argument {
             option: "--over",
             problem: format!("the scene of study {} has no {}", study.name(), over.symbol()),

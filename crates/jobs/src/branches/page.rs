@@ -84,7 +84,8 @@ pub fn answer(motions: &Motions) -> Vec<String> {
         format!("{energy} J at {place}, on branch {number} ({})", kind(orbit))
     };
     words.extend(
-        most.first().map(|first| format!("The largest E1max of all stable motions: {}.", reached(first))),
+        most.first()
+            .map(|first| format!("The largest E1max of all stable motions found: {}.", reached(first))),
     );
     if let Some((number, first)) = most.first().filter(|(number, _)| !all.is_reached_from_rest(*number)) {
         let usual = most.iter().find(|(other, _)| all.is_reached_from_rest(*other)).map(reached);
@@ -93,7 +94,9 @@ pub fn answer(motions: &Motions) -> Vec<String> {
         let ways: Vec<String> = TRIED.into_iter().chain(Parameter::AMPLITUDES).filter_map(remedy).collect();
         if !ways.is_empty() {
             let (place, ways) = (motions.at(first.value, 6), ways.join("; "));
-            words.push(format!("What removes that motion, at {place} and all else as it is: {ways}."));
+            words.push(format!(
+                "What removes that motion (another may remain), at {place} and all else as it is: {ways}."
+            ));
         }
     }
     words.extend(all.branches.iter().enumerate().filter_map(|(i, branch)| isola(motions, i, branch)));

@@ -60,6 +60,7 @@ impl Sweep {
             let own = |term: &Objective| match plan.over {
                 Parameter::Omega => term.omega.is_some(),
                 Parameter::K1 => term.k1.is_some(),
+                Parameter::Restitution => term.restitution.is_some(),
                 _ => false,
             };
             if objective.terms().iter().all(|(_, term)| own(term)) {

@@ -15,6 +15,8 @@ const WIDE: usize = 12;
 const FEW: usize = 12;
 /// The mark of the row with the smallest value, the longer of the two.
 const SMALLEST: &str = " < smallest";
+/// That of a row whose design breaks a limit.
+const BROKEN: &str = " over limit";
 
 /// What a sweep shows: the name of a column, in a table or figure.
 pub(crate) fn shown(sweep: &Sweep) -> Vec<String> {
@@ -56,7 +58,8 @@ pub(crate) fn each(sweep: &Sweep) -> String {
         return format!("each the objective of the study: {}", over(&study.objective(), omega));
     }
     let (t0, end) = (study.window.t0.get(), study.window.end.get());
-    format!("each a run from rest, largest values from {t0} to {end} s")
+    let start = if study.begins_at_rest().is_ok() { "rest" } else { "its start" };
+    format!("each a run from {start}, largest values from {t0} to {end} s")
 }
 
 /// A value of the parameter with its unit.
@@ -97,12 +100,18 @@ pub fn text(sweep: &Sweep, table: &Table, reasons: &[(f64, String)], all: bool) 
     lines.push(String::new());
     let columns = columns(sweep, table);
     lines.extend(header(&columns));
-    let end = |sign| shown(sweep).first().and_then(|name| Some(extreme(&table.column(name)?, sign)?.0));
+    let end = |sign| shown(sweep).first().and_then(|name| Some(extreme(&known(table, name, sign)?, sign)?.0));
     let (high, low) = (end(1.0), end(-1.0));
+    let broken: Vec<bool> = (0..table.rows.len()).map(|row| breaks(table, row)).collect();
+    if broken.contains(&true) {
+        let count = counted(broken.iter().filter(|broken| **broken).count() as u64, "value");
+        lines.insert(lines.len() - 3, format!("{count} with a design that breaks a limit of the study"));
+    }
     for i in chosen(table.rows.len(), [high, low].into_iter().flatten(), all) {
         let cells = columns.iter().map(|(_, width, values)| format!("{:>width$}", cell(values[i])));
         let mark = match Some(i) {
-            _ if high == low => "",
+            _ if broken[i] => BROKEN,
+            _ if high == low && !broken.contains(&true) => "",
             row if row == high => " < largest",
             row if row == low => SMALLEST,
             _ => "",
@@ -112,17 +121,39 @@ pub fn text(sweep: &Sweep, table: &Table, reasons: &[(f64, String)], all: bool) 
     lines.join("\n")
 }
 
+/// Whether the design of a row breaks a limit, by more than rounding.
+fn breaks(table: &Table, row: usize) -> bool {
+    table.column("violation").is_some_and(|violations| violations[row] > ROUNDING)
+}
+
+const ROUNDING: f64 = 1e-12;
+
+/// A column for its extreme of this sign: the smallest is that of a design that keeps all limits, where there is one.
+fn known(table: &Table, name: &str, sign: f64) -> Option<Vec<f64>> {
+    let mut numbers = table.column(name)?;
+    let broken: Vec<bool> = (0..numbers.len()).map(|row| breaks(table, row)).collect();
+    if sign < 0.0 && broken.contains(&false) {
+        numbers
+            .iter_mut()
+            .zip(broken)
+            .filter(|(_, broken)| *broken)
+            .for_each(|(number, _)| *number = f64::NAN);
+    }
+    Some(numbers)
+}
+
 /// Where a quantity is largest and smallest, and the same without a damper.
 fn answer(sweep: &Sweep, table: &Table, values: &[f64], name: &str) -> Vec<String> {
     let unit = table.unit(name);
     let said = |column: &str| -> Option<[String; 2]> {
-        let numbers = table.column(column)?;
-        let (high, low) = (extreme(&numbers, 1.0)?, extreme(&numbers, -1.0)?);
+        let [high, low] = [1.0, -1.0].map(|sign| extreme(&known(table, column, sign)?, sign));
+        let (high, low) = (high?, low?);
         let words = |(row, value): (usize, f64)| {
             let space = if unit.is_empty() { "" } else { " " };
             format!("{} {unit}{space}at {}", rounded(value, 4), at(sweep, values[row]))
         };
-        let same = high.1 == low.1;
+        let lowest = extreme(&table.column(column)?, -1.0)?;
+        let same = high.1 == lowest.1;
         let always = format!("{} {unit} at every value", rounded(high.1, 4));
         Some(if same { [always, String::new()] } else { [words(high), words(low)] })
     };
@@ -131,7 +162,8 @@ fn answer(sweep: &Sweep, table: &Table, values: &[f64], name: &str) -> Vec<Strin
     if low.is_empty() {
         lines = vec![format!("{name}: {high}")];
     } else {
-        lines.push(format!("  smallest {low}"));
+        let keeping = (0..values.len()).any(|row| breaks(table, row));
+        lines.push(format!("  smallest {}{low}", if keeping { "that keeps the limits " } else { "" }));
     }
     if let Some([high, low]) = said(&format!("{name}_none")) {
         let largest = if low.is_empty() { "" } else { "largest " };

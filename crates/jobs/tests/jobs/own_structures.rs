@@ -112,3 +112,58 @@ fn contract_every_number_of_a_design_in_a_table_is_verified() {
         assert!(problem.contains(&format!("{name} in row 1")), "{problem}");
     }
 }
+
+/// A damper without walls has one motion at each frequency, whatever the rounding of the ends of a band.
+#[test]
+fn regress_one_motion_is_one_branch() {
+    use retune_jobs::branches::{Options, branches};
+    let primary = json!({ "m1": 4e4, "c1": 753.982_236_861_550_4, "k1": 142_122.303_375_686_75 });
+    let damper = json!({ "m2": 800, "k2": 2592, "c2": 250 });
+    let mut study = tmd(&primary, 1.8, &damper, &json!({}), &json!({}));
+    study["optimize"] = Value::Null;
+    let desk = Desk::with(&study);
+    for from in ["1.69", "1.7"] {
+        let options = Options {
+            from: Some(from.to_owned()),
+            to: Some("2.23".to_owned()),
+            starts: 2,
+            apart: 0,
+            fine: 0,
+            samples: 5,
+            ..Options::default()
+        };
+        let request = Request { replace: true, ..crate::request(&desk, "study.json", "out") };
+        good(branches(&request, &options, &Silent));
+        let said = desk.read("out/README.md");
+        assert!(said.contains("of 1 branch, cover 100 %"), "{said}");
+    }
+}
+
+/// A restitution ends at 1: so does its branch, and it is one.
+#[test]
+fn contract_a_branch_ends_where_its_parameter_does() {
+    use retune_jobs::branches::{Options, branches};
+    let mut study = retune_testkit::desk::tiny();
+    let contact = study["scene"]["damper"]["contact"].clone();
+    study["scene"] = json!({
+        "primary": { "m1": 250, "c1": 126, "k1": 39478 },
+        "forcing": { "P": 120, "omega": 12.566 },
+        "damper": { "m2": 12.5, "k2": 500, "c2": 40, "D": 0.12, "C": 0.0075, "contact": contact }
+    });
+    study["window"] = json!({ "t0": 25, "T": 50 });
+    study["optimize"] = Value::Null;
+    let desk = Desk::with(&study);
+    let options = Options {
+        over: retune_model::Parameter::Restitution,
+        from: Some("0.97".to_owned()),
+        to: Some("1".to_owned()),
+        samples: 2,
+        starts: 0,
+        apart: 0,
+        fine: 0,
+        ..Options::default()
+    };
+    good(branches(&crate::request(&desk, "study.json", "out"), &options, &Silent));
+    let said = desk.read("out/README.md");
+    assert!(said.contains("ends where the range ends") && !said.contains("was lost"), "{said}");
+}

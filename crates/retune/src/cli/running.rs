@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// The options of a run.
 #[derive(Debug, Args)]
 pub struct Running {
-    /// Directory of the results [default: results/<study>]
+    /// Directory of the results [default: in results, by the name of the study and of what is made of it]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// What the screen shows, and threads.

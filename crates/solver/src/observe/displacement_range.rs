@@ -54,9 +54,13 @@ impl<'a> DisplacementRange<'a> {
         self.larger(|side, place| hertz_force(system.hertz(side), side.sign() * (place - system.wall(side))))
     }
 
-    /// The largest contact pressure on either wall, N/m², and when; `-∞` and NaN while no motion has been seen.
+    /// The largest contact pressure on either wall, N/m², and when; `-∞` and NaN while no motion has been seen. That of an impact with a rigid wall is
+    /// infinite, as its force is.
     pub fn pressure(&self) -> Extreme {
         let system = self.system;
+        if self.struck.is_some() {
+            return self.force();
+        }
         self.larger(|side, place| system.wall_pressure(side, side.sign() * (place - system.wall(side))))
     }
 
