@@ -3,7 +3,7 @@
 use crate::limits::MOST_SAMPLES;
 use crate::protocol::Answer;
 use rayon::prelude::*;
-use retune_model::{Measure, NonNegative, Positive, Scene};
+use retune_model::{Bare, Measure, NonNegative, Positive, Scene};
 use retune_optim::{Band, FrequencyBand, Goal, Limit, Objective, Response, worst_over};
 use retune_study::{Study, rounded, short};
 use serde::Serialize;
@@ -216,21 +216,34 @@ impl Curve {
 /// # Errors
 /// The work has become stale.
 pub fn worst(study: &Study, whose: &str, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<Answer, Stale> {
-    let (found, bare) = (Curve::own(study).worst(is_stale)?, Curve::own(&bare(study)).worst(is_stale)?);
+    let (found, none) = (Curve::own(study).worst(is_stale)?, without(study, is_stale)?);
     let Some([value, omega]) = found else {
         let problem = "no value at some frequency of the band";
         return Ok(Answer::new("worst").with("whose", whose).with("problem", problem));
     };
     let figures = largest(study, is_stale)?;
-    let reduction = bare.map(|[bare, _]| bare / value).filter(|ratio| ratio.is_finite());
+    let reduction = none.map(|none| none / value).filter(|ratio| ratio.is_finite());
     Ok(Answer::new("worst")
         .with("whose", whose)
         .with("value", value)
         .with("words", rounded(value, 4))
         .with("omega", omega)
         .with("reduction", reduction.map(|ratio| rounded(ratio, 3)))
-        .with("none", bare.map(|[value, _]| rounded(value, 4)))
+        .with("none", none.map(|none| rounded(none, 4)))
         .with("figures", figures))
+}
+
+/// The worst without a damper; of the steady motion, where that is more than a window holds in which the structure has not settled.
+fn without(study: &Study, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<Option<f64>, Stale> {
+    let bare = bare(study);
+    let found = Curve::own(&bare).worst(is_stale)?.map(|[value, _]| value);
+    if bare.unsettled().is_none() {
+        return Ok(found);
+    }
+    let Band { from, to, .. } = band(study);
+    let system = Bare::new(&bare.scene.primary, &bare.scene.forcing);
+    let steady = system.steady_max(study.quantity(), [from, to]).value;
+    Ok(found.map(|found| found.max(steady)).filter(|value| value.is_finite()))
 }
 
 /// The largest values over the band, each at its own frequency, as the figures of a run are shown; none where some frequency has no value.

@@ -219,5 +219,32 @@ fn contract_a_structure_of_ones_own_takes_the_place_of_the_study() {
     assert!(control("k2")["units"].as_array().is_some_and(|units| units.contains(&json!(["kN/m", 1e3]))));
     let worst = found.iter().rev().find(|answer| kind(answer) == "worst").expect("a worst");
     assert!(worst.get("value").and_then(Value::as_f64).is_some_and(|worst| worst > 0.5 && worst < 0.7));
+    // Without a damper the structure has not settled in the window: what is told is its steady motion, about F / 2 ζ k1.
+    let none: f64 =
+        worst.get("none").and_then(Value::as_str).and_then(|none| none.parse().ok()).expect("a number");
+    let stiffness = 4e4 * natural * natural;
+    let steady = 0.5 * stiffness * (280.0 / (2.0 * 0.005 * stiffness)).powi(2);
+    assert!((none / steady - 1.0).abs() < 1e-3, "{none} {steady}");
     assert!(["D", "C"].iter().all(|gap| value(gap) > 1e-4), "the gaps of an SSVI NES are scaled");
+}
+
+/// A pulse moves a structure of one's own, too, whichever damper hangs on it.
+#[test]
+fn contract_a_pulse_moves_a_structure_of_ones_own() {
+    let structure = json!({ "m1": "40 t", "f1": "2 Hz", "zeta": "0.5 %", "force": "280 N", "band": "1.8..2.2 Hz", "mass": "2 %" });
+    let pulse = json!({ "pulse": "half sine", "of": "force", "peak": 10, "unit": "kN", "duration": 0.1 });
+    for damper in ["tmd", "ssvi"] {
+        let place = json!({ "damper": damper, "set": {} });
+        let asked = [
+            json!({ "own": { "structure": structure } }),
+            json!({ "force": { "forcing": pulse, "text": null } }),
+            json!({ "look": { "id": 5, "place": place, "columns": 100 } }),
+        ];
+        let found = answers(asked.map(|message| message.to_string()).to_vec(), |answer| {
+            kind(answer) == "refused" || kind(answer) == "done" && answer.get("id") == Some(&json!(5))
+        });
+        assert!(found.iter().all(|answer| kind(answer) != "refused"), "{damper} is refused");
+        let hello = found.iter().rfind(|answer| kind(answer) == "hello").expect("another study");
+        assert_eq!([hello.get("transient"), hello.get("damper")], [Some(&json!(true)), Some(&json!("tmd"))]);
+    }
 }
