@@ -5,7 +5,7 @@ use super::global::GlobalSearch;
 use super::objective::{check, check_decay, check_limits};
 use super::records;
 use super::rule::Rule;
-use retune_model::{Coupled, Damper, Design, Forcing, Measure, PerVariable, Side};
+use retune_model::{Amplitude, Coupled, Damper, Design, Forcing, Measure, PerVariable, Side, Source};
 use retune_optim::{Axis, Bounds, Global, Grid, Limit, Options, Parameter, Scaling, Space};
 use retune_solver::Method;
 use std::convert::Infallible;
@@ -68,6 +68,12 @@ impl Study {
             if !(0.0..=most).contains(&value) {
                 return Err(Rule::not_allowed(field, value, allowed));
             }
+        }
+        if matches!(self.scene.forcing.source, Source::Harmonic(Amplitude::BaseAcceleration, size) if size.get() > 0.0)
+            && self.scene.forcing.frequency.get() == 0.0
+        {
+            let allowed = "a number above 0: the base would move without end";
+            return Err(Rule::not_allowed("scene.forcing.omega", 0.0, allowed));
         }
         if !(self.solver.atol >= 0.0 && self.solver.atol.is_finite()) {
             return Err(Rule::not_allowed("solver.atol", self.solver.atol, FINITE));

@@ -106,6 +106,10 @@ impl Plan {
             option: "--from, --to, --points",
             problem: error.to_string(),
         };
+        if from == to {
+            let problem = format!("{to} is not allowed here: give another number than --from");
+            return Err(Error::Argument { option: "--to", problem });
+        }
         Axis::new(from, to, points, scale).map_err(refuse)
     }
 }

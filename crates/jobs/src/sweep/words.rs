@@ -96,6 +96,10 @@ pub fn text(sweep: &Sweep, table: &Table, reasons: &[(f64, String)], all: bool) 
     let values: Vec<f64> = table.rows.iter().map(|row| row[0].number()).collect();
     for name in shown(sweep) {
         lines.extend(answer(sweep, table, &values, &name));
+        let none = table.column(&name).map_or(0, |all| all.iter().filter(|value| !value.is_finite()).count());
+        if none > 0 && reasons.is_empty() {
+            lines.push(format!("  none at {}", counted(none as u64, "value")));
+        }
     }
     lines.push(String::new());
     let columns = columns(sweep, table);

@@ -176,3 +176,19 @@ fn contract_verify_runs_points_again_and_sees_a_changed_number() {
     let said = record.results();
     assert!(said.contains("3 of 7 rows run again (omega to transmissibility_none): 1 differs"), "{said}");
 }
+
+/// Along a sweep of the objective the smallest is that of a design that keeps the limits; the others are marked.
+#[test]
+fn contract_designs_that_break_a_limit_are_marked() {
+    let mut study = tiny();
+    study["optimize"]["limits"] = json!({ "cavity": 0.4 });
+    let desk = Desk::with(&study);
+    let ends = ["0.02", "0.2"].map(str::to_owned);
+    let [from, to] = ends;
+    let options = Options { objective: true, points: 3, from, to, ..Options::over(Parameter::D) };
+    good(sweep(&request(&desk, "study.json", "out"), &options, &Points::All, &Silent));
+    let said = desk.read("out/sweep.txt");
+    assert_eq!(said.matches(" over limit").count(), 2, "{said}");
+    assert!(said.contains("2 values with a design that breaks a limit"), "{said}");
+    assert!(said.contains("smallest that keeps the limits") && !said.contains("at every value"), "{said}");
+}
