@@ -102,7 +102,8 @@ impl From<Unusable> for Fault {
             | Unusable::Member(source)
             | Unusable::Frequency(source) => Self::study(error.to_string(), Given::Number(source.value)),
             Unusable::Motions(retune_dynamics::Error::Run(error)) => Self::Solver(error),
-            Unusable::Touches { .. }
+            Unusable::Resonates { .. }
+            | Unusable::Touches { .. }
             | Unusable::Stopped
             | Unusable::Motions(_)
             | Unusable::NoDerivatives
