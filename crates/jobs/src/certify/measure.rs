@@ -34,8 +34,9 @@ const CONVERGENCE: [(Method, f64); 5] = [
 const SMALL: f64 = 1e-3;
 /// The angle, rad, by which the force is turned between rigid walls, as a share of the tolerance that would stand there.
 const TURNED: f64 = 1e-3;
-/// Time over which methods that step in time follow a steady motion at least, s; times of its slowest decay; and the criterion by which it has settled.
-const LONG: f64 = 2000.0;
+/// Time over which methods that step in time follow a steady motion at least and at most, s; times of its slowest decay; and the criterion by which it
+/// has settled.
+const LONG: [f64; 2] = [2000.0, 5e4];
 const DECAYS: f64 = 40.0;
 const STEADY: Settle = Settle { periods: 10, blocks: 3, tolerance: 1e-9 };
 
@@ -155,7 +156,7 @@ fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Ru
     let rigid = walls.is_some_and(|walls| walls.rigid().is_some());
     let small = smallness(&worst.scene, goal.window, settings);
     let decay = worst.scene.slowest_decay();
-    let long = if decay > 0.0 { (DECAYS / decay).max(LONG) } else { LONG };
+    let long = if decay > 0.0 { (DECAYS / decay).clamp(LONG[0], LONG[1]) } else { LONG[0] };
     let run = |&(method, rtol): &(Method, f64)| {
         let settings = Settings { method, rtol, atol: 0.01 * rtol * small, ..*settings };
         // Between rigid walls there is no tolerance: the force is turned by as little, to tell whether the motion can be predicted.
