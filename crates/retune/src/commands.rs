@@ -140,10 +140,8 @@ fn simulate(arguments: &cli::Simulate) -> Result<(), Error> {
     study.solver.rtol = arguments.rtol.unwrap_or(study.solver.rtol);
     let mut study = study.with(&arguments.settings)?;
     if let Some(start) = arguments.from {
-        study.scene.forcing.begin(start);
-        // Only comparisons of a search begin at rest.
-        let alone = study::Study { optimize: None, ..study.clone() };
-        alone.check().map_err(|rule| Error::Rule { name: study.name().to_owned(), rule })?;
+        let name = study.name().to_owned();
+        study = study.beginning_at(start).map_err(|rule| Error::Rule { name, rule })?;
     }
     let inputs = [arguments.study.as_path()];
     let trajectory = arguments.trajectory.as_deref();

@@ -153,15 +153,15 @@ const NOT_SECONDS: [&str; 5] = ["ms", "msec", "us", "µs", "min"];
 /// Refuses a header that names other units than those in which its columns are read.
 fn units_of(names: &csv::StringRecord, place: usize, of: Of, source: &RecordFile) -> Result<(), String> {
     // `a (g)`, `t [ms]`
-    let told = |name: &'_ str| {
+    fn told(name: &str) -> Option<&str> {
         let (_, unit) = name.strip_suffix([')', ']'])?.rsplit_once(['(', '['])?;
-        Some(unit.trim().to_owned())
-    };
-    if let Some(unit) = told(&names[0]).filter(|unit| NOT_SECONDS.contains(&unit.as_str())) {
+        Some(unit.trim())
+    }
+    if let Some(unit) = told(&names[0]).filter(|unit| NOT_SECONDS.contains(unit)) {
         return Err(format!("line 1: \"{}\" is in {unit}: give times in s", &names[0]));
     }
     let (name, own) = (&names[place], of.units()[0]);
-    let known = told(name).and_then(|own| unit::named(&own, of.units()));
+    let known = told(name).and_then(|text| unit::named(text, of.units()));
     match known.filter(|unit| source.unit.is_none() && unit.1 != own.1) {
         None => Ok(()),
         Some((unit, _)) => Err(format!("line 1: \"{name}\" is in {unit}: say so, \"unit\": \"{unit}\"")),

@@ -190,6 +190,16 @@ pub fn start(text: &str) -> Result<Start, SettingError> {
 }
 
 impl Study {
+    /// The same study whose runs begin at a state (m, m/s), checked like a file but for its search, which begins at rest.
+    ///
+    /// # Errors
+    /// The [`Rule`] that it breaks.
+    pub fn beginning_at(mut self, start: Start) -> Result<Self, Rule> {
+        self.scene.forcing.begin(start);
+        Self { optimize: None, ..self.clone() }.check()?;
+        Ok(self)
+    }
+
     /// Refuses a scene whose forced motion does not begin at rest, for whoever compares with runs from rest.
     pub fn begins_at_rest(&self) -> Result<(), Rule> {
         match self.scene.forcing.start {

@@ -3,6 +3,7 @@
 use crate::rows::Rows;
 use crate::sweep::points::Sweep;
 use retune_model::Parameter;
+use retune_optim::Limits;
 use retune_report::table::{Column, Table};
 use retune_study::{counted, frequency, hertz_and_rpm, over, rounded};
 use textwrap::{Options, fill};
@@ -94,28 +95,31 @@ pub fn text(sweep: &Sweep, table: &Table, reasons: &[(f64, String)], all: bool) 
         lines.push(fill(&words, Options::new(WIDEST).subsequent_indent("  ")));
     }
     let values: Vec<f64> = table.rows.iter().map(|row| row[0].number()).collect();
+    let broken = broken(table);
     for name in shown(sweep) {
-        lines.extend(answer(sweep, table, &values, &name));
+        lines.extend(answer(sweep, table, (&values, &broken), &name));
         let none = table.column(&name).map_or(0, |all| all.iter().filter(|value| !value.is_finite()).count());
         if none > 0 && reasons.is_empty() {
             lines.push(format!("  none at {}", counted(none as u64, "value")));
         }
     }
+    let breaking = broken.iter().filter(|broken| **broken).count();
+    if breaking > 0 {
+        let count = counted(breaking as u64, "value");
+        lines.push(format!("{count} with a design that breaks a limit of the study"));
+    }
     lines.push(String::new());
     let columns = columns(sweep, table);
     lines.extend(header(&columns));
-    let end = |sign| shown(sweep).first().and_then(|name| Some(extreme(&known(table, name, sign)?, sign)?.0));
-    let (high, low) = (end(1.0), end(-1.0));
-    let broken: Vec<bool> = (0..table.rows.len()).map(|row| breaks(table, row)).collect();
-    if broken.contains(&true) {
-        let count = counted(broken.iter().filter(|broken| **broken).count() as u64, "value");
-        lines.insert(lines.len() - 3, format!("{count} with a design that breaks a limit of the study"));
-    }
+    let first = shown(sweep).into_iter().next();
+    let end = |numbers: Option<Vec<f64>>, sign| Some(extreme(&numbers?, sign)?.0);
+    let high = end(first.as_ref().and_then(|name| table.column(name)), 1.0);
+    let low = end(first.as_ref().and_then(|name| kept(table, name, &broken)), -1.0);
     for i in chosen(table.rows.len(), [high, low].into_iter().flatten(), all) {
         let cells = columns.iter().map(|(_, width, values)| format!("{:>width$}", cell(values[i])));
         let mark = match Some(i) {
             _ if broken[i] => BROKEN,
-            _ if high == low && !broken.contains(&true) => "",
+            _ if high == low && breaking == 0 => "",
             row if row == high => " < largest",
             row if row == low => SMALLEST,
             _ => "",
@@ -125,38 +129,38 @@ pub fn text(sweep: &Sweep, table: &Table, reasons: &[(f64, String)], all: bool) 
     lines.join("\n")
 }
 
-/// Whether the design of a row breaks a limit, by more than rounding.
-fn breaks(table: &Table, row: usize) -> bool {
-    table.column("violation").is_some_and(|violations| violations[row] > ROUNDING)
+/// Of which rows the design breaks a limit, by more than rounding.
+fn broken(table: &Table) -> Vec<bool> {
+    let violations = table.column("violation").unwrap_or_else(|| vec![0.0; table.rows.len()]);
+    violations.into_iter().map(|violation| violation > Limits::ROUNDING).collect()
 }
 
-const ROUNDING: f64 = 1e-12;
-
-/// A column for its extreme of this sign: the smallest is that of a design that keeps all limits, where there is one.
-fn known(table: &Table, name: &str, sign: f64) -> Option<Vec<f64>> {
-    let mut numbers = table.column(name)?;
-    let broken: Vec<bool> = (0..numbers.len()).map(|row| breaks(table, row)).collect();
-    if sign < 0.0 && broken.contains(&false) {
-        numbers
-            .iter_mut()
-            .zip(broken)
-            .filter(|(_, broken)| *broken)
-            .for_each(|(number, _)| *number = f64::NAN);
+/// A column without the values of designs that break a limit; all of it where every design does.
+fn kept(table: &Table, name: &str, broken: &[bool]) -> Option<Vec<f64>> {
+    let numbers = table.column(name)?;
+    if !broken.contains(&false) {
+        return Some(numbers);
     }
-    Some(numbers)
+    Some(
+        numbers
+            .into_iter()
+            .zip(broken)
+            .map(|(number, broken)| if *broken { f64::NAN } else { number })
+            .collect(),
+    )
 }
 
 /// Where a quantity is largest and smallest, and the same without a damper.
-fn answer(sweep: &Sweep, table: &Table, values: &[f64], name: &str) -> Vec<String> {
+fn answer(sweep: &Sweep, table: &Table, (values, broken): (&[f64], &[bool]), name: &str) -> Vec<String> {
     let unit = table.unit(name);
     let said = |column: &str| -> Option<[String; 2]> {
-        let [high, low] = [1.0, -1.0].map(|sign| extreme(&known(table, column, sign)?, sign));
-        let (high, low) = (high?, low?);
+        let numbers = table.column(column)?;
+        let (high, lowest) = (extreme(&numbers, 1.0)?, extreme(&numbers, -1.0)?);
+        let low = extreme(&kept(table, column, broken)?, -1.0)?;
         let words = |(row, value): (usize, f64)| {
             let space = if unit.is_empty() { "" } else { " " };
             format!("{} {unit}{space}at {}", rounded(value, 4), at(sweep, values[row]))
         };
-        let lowest = extreme(&table.column(column)?, -1.0)?;
         let same = high.1 == lowest.1;
         let always = format!("{} {unit} at every value", rounded(high.1, 4));
         Some(if same { [always, String::new()] } else { [words(high), words(low)] })
@@ -166,8 +170,8 @@ fn answer(sweep: &Sweep, table: &Table, values: &[f64], name: &str) -> Vec<Strin
     if low.is_empty() {
         lines = vec![format!("{name}: {high}")];
     } else {
-        let keeping = (0..values.len()).any(|row| breaks(table, row));
-        lines.push(format!("  smallest {}{low}", if keeping { "that keeps the limits " } else { "" }));
+        let some_keep = broken.contains(&true) && broken.contains(&false);
+        lines.push(format!("  smallest {}{low}", if some_keep { "that keeps the limits " } else { "" }));
     }
     if let Some([high, low]) = said(&format!("{name}_none")) {
         let largest = if low.is_empty() { "" } else { "largest " };

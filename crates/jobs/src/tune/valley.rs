@@ -106,7 +106,7 @@ impl Valley {
     }
 }
 
-/// A number to two digits, in the direction that `round` takes.
+/// A number to two digits, in the direction that `round`, a ceiling or a floor, takes.
 fn inward(value: f64, round: impl Fn(f64) -> f64) -> f64 {
     let own: f64 = rounded(value, 2).parse().unwrap_or(value);
     if own == value || value <= 0.0 {
@@ -115,4 +115,18 @@ fn inward(value: f64, round: impl Fn(f64) -> f64) -> f64 {
     let unit = 10f64.powf(value.log10().floor() - 1.0);
     let inside = round(value / unit) * unit;
     rounded(inside, 2).parse().unwrap_or(inside)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exact_ends_are_rounded_to_the_inside() {
+        for (value, up, down) in
+            [(0.011_515, 0.012, 0.011), (579.2, 580.0, 570.0), (0.5, 0.5, 0.5), (0.0, 0.0, 0.0)]
+        {
+            assert_eq!([inward(value, f64::ceil), inward(value, f64::floor)], [up, down], "{value}");
+        }
+    }
 }

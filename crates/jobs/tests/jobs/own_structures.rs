@@ -1,11 +1,15 @@
 //! What is said of structures that are not the paper's: slow, undamped, in a range of stiffnesses, under one frequency.
 
-use crate::search;
+use crate::{request, search};
+use retune_jobs::branches::{Options, branches};
 use retune_jobs::evaluate::{Streams, evaluate};
+use retune_jobs::table2::table2;
 use retune_jobs::{Request, Silent};
+use retune_model::Parameter;
 use retune_study::read::from_text;
-use retune_testkit::desk::{Desk, flat, number};
+use retune_testkit::desk::{Desk, flat, number, tiny};
 use retune_testkit::observers::{good, refused};
+use retune_testkit::verified::{self, End, look};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -92,10 +96,8 @@ fn contract_an_undamped_resonance_is_named() {
 /// A stroke changed in a table, and its hash with it: the row is computed again.
 #[test]
 fn contract_every_number_of_a_design_in_a_table_is_verified() {
-    use retune_jobs::table2::table2;
-    use retune_testkit::verified::{self, End, look};
     let desk = verified::desk();
-    good(table2(&crate::request(&desk, "table2.json", "out"), &Silent));
+    good(table2(&request(&desk, "table2.json", "out"), &Silent));
     let whole = desk.read("out/table2.csv");
     let names: Vec<&str> = whole.lines().next().expect("a header").split(',').collect();
     for name in ["stroke", "contact_force", "x1max", "a1max", "ground_force"] {
@@ -113,28 +115,30 @@ fn contract_every_number_of_a_design_in_a_table_is_verified() {
     }
 }
 
+/// Branches between two values, of the fewest runs.
+fn between(from: &str, to: &str) -> Options {
+    let [from, to] = [from, to].map(|end| Some(end.to_owned()));
+    Options { from, to, samples: 2, starts: 0, apart: 0, fine: 0, ..Options::default() }
+}
+
+/// The page of the branches of a study.
+fn traced(desk: &Desk, options: &Options) -> String {
+    let request = Request { replace: true, ..request(desk, "study.json", "out") };
+    good(branches(&request, options, &Silent));
+    desk.read("out/README.md")
+}
+
 /// A damper without walls has one motion at each frequency, whatever the rounding of the ends of a band.
 #[test]
 fn regress_one_motion_is_one_branch() {
-    use retune_jobs::branches::{Options, branches};
     let primary = json!({ "m1": 4e4, "c1": 753.982_236_861_550_4, "k1": 142_122.303_375_686_75 });
     let damper = json!({ "m2": 800, "k2": 2592, "c2": 250 });
     let mut study = tmd(&primary, 1.8, &damper, &json!({}), &json!({}));
     study["optimize"] = Value::Null;
     let desk = Desk::with(&study);
     for from in ["1.69", "1.7"] {
-        let options = Options {
-            from: Some(from.to_owned()),
-            to: Some("2.23".to_owned()),
-            starts: 2,
-            apart: 0,
-            fine: 0,
-            samples: 5,
-            ..Options::default()
-        };
-        let request = Request { replace: true, ..crate::request(&desk, "study.json", "out") };
-        good(branches(&request, &options, &Silent));
-        let said = desk.read("out/README.md");
+        let options = Options { samples: 5, starts: 2, ..between(from, "2.23") };
+        let said = traced(&desk, &options);
         assert!(said.contains("of 1 branch, cover 100 %"), "{said}");
     }
 }
@@ -142,8 +146,7 @@ fn regress_one_motion_is_one_branch() {
 /// A restitution ends at 1: so does its branch, and it is one.
 #[test]
 fn contract_a_branch_ends_where_its_parameter_does() {
-    use retune_jobs::branches::{Options, branches};
-    let mut study = retune_testkit::desk::tiny();
+    let mut study = tiny();
     let contact = study["scene"]["damper"]["contact"].clone();
     study["scene"] = json!({
         "primary": { "m1": 250, "c1": 126, "k1": 39478 },
@@ -153,17 +156,7 @@ fn contract_a_branch_ends_where_its_parameter_does() {
     study["window"] = json!({ "t0": 25, "T": 50 });
     study["optimize"] = Value::Null;
     let desk = Desk::with(&study);
-    let options = Options {
-        over: retune_model::Parameter::Restitution,
-        from: Some("0.97".to_owned()),
-        to: Some("1".to_owned()),
-        samples: 2,
-        starts: 0,
-        apart: 0,
-        fine: 0,
-        ..Options::default()
-    };
-    good(branches(&crate::request(&desk, "study.json", "out"), &options, &Silent));
-    let said = desk.read("out/README.md");
+    let options = Options { over: Parameter::Restitution, ..between("0.97", "1") };
+    let said = traced(&desk, &options);
     assert!(said.contains("ends where the range ends") && !said.contains("was lost"), "{said}");
 }

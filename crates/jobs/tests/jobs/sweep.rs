@@ -191,4 +191,11 @@ fn contract_designs_that_break_a_limit_are_marked() {
     assert_eq!(said.matches(" over limit").count(), 2, "{said}");
     assert!(said.contains("2 values with a design that breaks a limit"), "{said}");
     assert!(said.contains("E1max: largest") && said.contains("smallest that keeps the limits"), "{said}");
+    // Where none keeps them, the smallest does not either.
+    study["optimize"]["limits"] = json!({ "cavity": 0.1 });
+    let desk = Desk::with(&study);
+    good(sweep(&request(&desk, "study.json", "out"), &options, &Points::All, &Silent));
+    let said = desk.read("out/sweep.txt");
+    assert_eq!(said.matches(" over limit").count(), 3, "{said}");
+    assert!(said.contains("  smallest 3") && !said.contains("that keeps"), "{said}");
 }

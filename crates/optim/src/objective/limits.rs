@@ -122,6 +122,9 @@ pub const INFEASIBLE: f64 = 1e100;
 pub const ACTIVE: f64 = 0.01;
 
 impl Limits {
+    /// The share of a limit by which rounding may exceed it: no one is told of less.
+    pub const ROUNDING: f64 = 1e-12;
+
     /// The largest value allowed of a quantity.
     pub fn get(&self, limit: Limit) -> Option<f64> {
         self.most.get(limit).map(Positive::get)

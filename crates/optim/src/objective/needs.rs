@@ -44,8 +44,8 @@ const MOST: f64 = 1601.0;
 /// How often the search of the best linear damper is begun again at its end, where it gains this share each time.
 const RESTARTS: u32 = 4;
 const GAIN: f64 = 1e-4;
-/// The share of critical damping below which it has none.
-const NONE: f64 = 1e-9;
+/// The share of its critical damping below which a damper is told to have none.
+const UNDAMPED: f64 = 1e-9;
 
 impl Goal {
     /// What a scene needs by this goal, regardless of its limits, as long as `proceed` says so. Peaks between samples are searched, as those
@@ -187,7 +187,8 @@ impl Goal {
                 |start: &[f64]| minimize(value, start, options.clone(), |_| ControlFlow::Continue(())).ok();
             let mut found = from(&start)?;
             // A simplex may stop in a kink. In closed form another costs little.
-            for _ in 0..if objective.goal().objective.is_steady() { RESTARTS } else { 0 } {
+            let restarts = if objective.goal().objective.is_steady() { RESTARTS } else { 0 };
+            for _ in 0..restarts {
                 let again = from(&found.x)?;
                 if again.value >= (1.0 - GAIN) * found.value {
                     break;
@@ -214,7 +215,7 @@ impl Goal {
             best = search(best, &own)?;
         }
         let critical = 2.0 * (best[0] * damper.mass.get()).sqrt();
-        if best[1] < NONE * critical {
+        if best[1] < UNDAMPED * critical {
             best[1] = 0.0;
         }
         let [stiffness, damping] = best.map(NonNegative::new);

@@ -55,10 +55,27 @@ fn contract_what_is_not_proven_ends_with_code_1() {
         (&["prove", "tmd.json", "--periods", "2"], "--from <X1,V1,X2,V2>"),
         (&["prove", "tmd.json", "--from", "1"], "\"1\" is no state: give x1,v1,x2,v2"),
         (&["prove", "none.json"], "none.json: cannot be read"),
+        (&["prove", "tmd.json", "--omega", "6", "--set", "omega=5"], "--omega: omega is given by --set, too"),
     ] {
         let refused = desk.refused(arguments);
         assert!(refused.contains(said), "{refused}");
     }
+}
+
+/// A bound that holds at some frequencies of a band alone is not proven: what is shows, and the code is 1.
+#[test]
+fn contract_a_bound_must_hold_at_every_frequency() {
+    let band = ["prove", "tmd.json", "--omega", "5", "--to", "6.5"];
+    let desk = desk();
+    let whole = desk.good(&[&band[..], &["--json"]].concat());
+    let whole: Value = serde_json::from_str(&whole).expect("JSON");
+    let largest = whole.pointer("/E1max/1").and_then(Value::as_f64).expect("a bound");
+    let less = (0.5 * largest).to_string();
+    let Answer { code, stdout, stderr } = desk.run(&[&band[..], &["--most", &less]].concat());
+    assert_eq!(code, Some(1), "{stdout}");
+    assert!(stdout.contains("every omega") && stdout.contains("but for"), "{stdout}");
+    assert!(stderr.starts_with("error: study tmd: not proven: an E1max of at most "), "{stderr}");
+    desk.good(&[&band[..], &["--most", &(1.01 * largest).to_string()]].concat());
 }
 
 /// The theorem that `docs/proof.md` shows, but for its last digits, which depend on the processor's rounding of the guess.

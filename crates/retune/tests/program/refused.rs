@@ -2,7 +2,7 @@
 //! about studies are tested in `study`, those of results in `jobs`.
 
 use crate::common::{Answer, Desk, Program};
-use retune_testkit::desk::{edited, flat, global, studies, tiny};
+use retune_testkit::desk::{committed, edited, flat, global, studies, tiny};
 use serde_json::{Value, json};
 
 #[test]
@@ -20,6 +20,10 @@ fn contract_a_wrong_study_is_refused_with_its_line_and_leaves_nothing() {
         assert_eq!(words, expected, "{command}");
         assert_eq!(desk.names("."), ["bad.json"], "nothing may be left behind");
     }
+    desk.write_json("rigid.json", &committed("ssvi-rigid.json"));
+    let said = desk.refused(&["simulate", "rigid.json", "--from", "0,0,-5,0"]);
+    assert!(said.contains("scene.forcing.start.x2: -5 is not allowed here: give a place from x1"), "{said}");
+    desk.remove("rigid.json");
     let mut study = tiny();
     study["window"]["t0"] = json!(4);
     desk.write("bad.json", study.to_string());

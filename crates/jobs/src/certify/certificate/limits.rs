@@ -4,9 +4,6 @@ use retune_optim::{Limit, Limits, PerLimit};
 use retune_study::short;
 use serde::Serialize;
 
-/// The share by which rounding may exceed a limit.
-const ROUNDING: f64 = 1e-12;
-
 /// Which limits are broken, where the study has any.
 #[derive(Clone, Debug, Serialize)]
 pub struct Kept {
@@ -81,7 +78,7 @@ impl Excess {
     fn new(limits: &Limits, limit: Limit, reached: &PerLimit<f64>, at: &str) -> Option<Self> {
         let (allowed, reached) = (limits.get(limit)?, reached.get(limit));
         let over_percent = 100.0 * (reached / allowed - 1.0);
-        (reached > (1.0 + ROUNDING) * allowed).then(|| Self {
+        (reached > (1.0 + Limits::ROUNDING) * allowed).then(|| Self {
             limit,
             allowed,
             reached,
