@@ -19,8 +19,9 @@ use std::sync::LazyLock;
 use wide::f64x4;
 
 /// The rules in use, from few nodes to many.
-static RULES: LazyLock<(Lossless<8, 2>, Lossless<12, 3>, Lossless<16, 4>)> =
-    LazyLock::new(|| (lossless(), lossless(), lossless()));
+static FEW: LazyLock<Lossless<8, 2>> = LazyLock::new(lossless);
+static SOME: LazyLock<Lossless<12, 3>> = LazyLock::new(lossless);
+static MANY: LazyLock<Lossless<16, 4>> = LazyLock::new(lossless);
 
 /// That of contacts in which the force bends so much that the others do not suffice.
 static BENT: LazyLock<Lossless<24, 6>> = LazyLock::new(lossless);
@@ -66,46 +67,38 @@ impl Collisions {
             let loss = self.loss.as_ref().filter(|_| !observer.follows_contacts())?;
             return self.collide_lossy(loss, flow, touch, to, bends, observer);
         }
-        let (few, some, many) = &*RULES;
         // At these tolerances common contacts pass the error estimate of the rule. Inside a contact Gauss's nodes gain nothing, but the
         // motion there is still accurate enough for the energy of the much heavier structure.
         if self.rtol >= 1e-7
-            && let Some(end) = self.solve(
-                &few.0,
-                |pushed| self.iterate(few, &touch, to, pushed),
-                flow,
-                &touch,
-                bends,
-                observer,
-            )
+            && let Some(end) = self.by(&FEW, flow, &touch, to, bends, observer)
         {
             return Some(end);
         }
         if self.rtol >= 1e-9
-            && let Some(end) = self.solve(
-                &some.0,
-                |pushed| self.iterate(some, &touch, to, pushed),
-                flow,
-                &touch,
-                bends,
-                observer,
-            )
+            && let Some(end) = self.by(&SOME, flow, &touch, to, bends, observer)
         {
             return Some(end);
         }
-        let end = self.solve(
-            &many.0,
-            |pushed| self.iterate(many, &touch, to, pushed),
-            flow,
-            &touch,
-            bends,
-            observer,
-        );
+        let end = self.by(&MANY, flow, &touch, to, bends, observer);
         if end.is_some() || bends.all().is_empty() {
             return end;
         }
-        let most = &*BENT;
-        self.solve(&most.0, |pushed| self.iterate(most, &touch, to, pushed), flow, &touch, bends, observer)
+        self.by(&BENT, flow, &touch, to, bends, observer)
+    }
+
+    /// The same by one rule.
+    #[inline(always)]
+    fn by<const N: usize, const M: usize>(
+        &self,
+        rule: &LazyLock<Lossless<N, M>>,
+        flow: &Flow<4>,
+        touch: &Knot<4>,
+        to: f64,
+        bends: &Bends,
+        observer: &mut (impl Observer<4> + ?Sized),
+    ) -> Option<(Knot<4>, u64)> {
+        let rule = &**rule;
+        self.solve(&rule.0, |pushed| self.iterate(rule, touch, to, pushed), flow, touch, bends, observer)
     }
 
     /// The same of a contact that loses energy.
