@@ -69,7 +69,7 @@ pub trait Follow<const N: usize>: Planned<N> {
         self.follow_for(plan, window, settings, before, observer)
     }
 
-    /// The same, compiled for these observers, and some per cent faster: for the runs that a search consists of. Compiled for every observer, loops
+    /// The same, compiled for this observer, and some per cent faster: for the runs that a search consists of. Compiled for every observer, loops
     /// over time would make a build half as long again.
     ///
     /// # Errors
@@ -79,7 +79,7 @@ pub trait Follow<const N: usize>: Planned<N> {
         plan: Plan,
         window: Window,
         settings: &Settings,
-        before: &mut (impl Observer<N> + ?Sized),
+        before: &mut dyn Observer<N>,
         observer: &mut (impl Observer<N> + ?Sized),
     ) -> Followed<N>;
 }
@@ -90,7 +90,7 @@ impl Follow<2> for Bare {
         plan: Plan,
         window: Window,
         settings: &Settings,
-        before: &mut (impl Observer<2> + ?Sized),
+        before: &mut dyn Observer<2>,
         observer: &mut (impl Observer<2> + ?Sized),
     ) -> Followed<2> {
         match plan {
@@ -106,7 +106,7 @@ impl Follow<4> for Coupled {
         plan: Plan,
         window: Window,
         settings: &Settings,
-        before: &mut (impl Observer<4> + ?Sized),
+        before: &mut dyn Observer<4>,
         observer: &mut (impl Observer<4> + ?Sized),
     ) -> Followed<4> {
         match plan {
@@ -120,8 +120,8 @@ impl Follow<4> for Coupled {
                 let mut hybrid = Hybrid::new(self, settings.rtol, window.to, settings.max_steps);
                 let start = Motion::start(self);
                 let middle =
-                    if window.from > 0.0 { hybrid.propagate_for(start, window.from, before)? } else { start };
-                let end = hybrid.propagate_for(middle, window.to, observer)?;
+                    if window.from > 0.0 { hybrid.propagate(start, window.from, before)? } else { start };
+                let end = hybrid.propagate_for(middle, window.to, observer, None)?;
                 Ok((end.y, hybrid.work))
             }
         }
@@ -133,7 +133,7 @@ fn follow_free<S: LinearSystem<N>, const N: usize>(
     system: &S,
     window: Window,
     settings: &Settings,
-    before: &mut (impl Observer<N> + ?Sized),
+    before: &mut dyn Observer<N>,
     observer: &mut (impl Observer<N> + ?Sized),
 ) -> Followed<N> {
     let mut free = ContactFree::new(system, window.to, settings.max_steps);
@@ -150,14 +150,14 @@ fn follow_by<S: LinearSystem<N>, const N: usize>(
     system: &S,
     window: Window,
     settings: &Settings,
-    mut before: &mut (impl Observer<N> + ?Sized),
+    before: &mut dyn Observer<N>,
     mut observer: &mut (impl Observer<N> + ?Sized),
 ) -> Followed<N>
 where
     Const<N>: DimMin<Const<N>, Output = Const<N>>,
 {
     let run = Run::new(system, settings, 0.0, system.start(), settings.longest_step(window.to));
-    let run = follow_stretches(method, system, run, window.from, &mut before)?;
+    let run = follow_stretches(method, system, run, window.from, before)?;
     let run = follow_stretches(method, system, run, window.to, &mut observer)?;
     Ok((run.state(), run.work))
 }

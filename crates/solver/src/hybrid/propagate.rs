@@ -19,17 +19,20 @@ impl Hybrid<'_> {
         to: f64,
         observer: &mut dyn Observer<4>,
     ) -> Result<Motion, SolverError> {
-        self.propagate_for(from, to, observer)
+        self.propagate_for(from, to, observer, None)
     }
 
-    /// The same, compiled for this observer.
+    /// The same, compiled for this observer, with another that is called through a table: each one that it is compiled for adds a twentieth to a
+    /// build.
     #[inline(never)]
     pub(crate) fn propagate_for(
         &mut self,
         from: Motion,
         to: f64,
         observer: &mut (impl Observer<4> + ?Sized),
+        beside: Option<&mut dyn Observer<4>>,
     ) -> Result<Motion, SolverError> {
+        let observer = &mut (observer, beside);
         self.flow.check_step(from.t, to)?;
         self.budget =
             Budget::new(self.flow.pace(), self.max_steps, self.work.and(observer.looks()), [from.t, to]);

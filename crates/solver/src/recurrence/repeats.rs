@@ -150,7 +150,7 @@ pub fn follow_until_it_repeats(
     window: Window,
     late: f64,
     settings: &Settings,
-    before: &mut (impl Observer<4> + ?Sized),
+    before: &mut dyn Observer<4>,
     observer: &mut (impl Observer<4> + ?Sized),
 ) -> Result<([f64; 4], Work), SolverError> {
     let period = TAU / system.bare().frequency();
@@ -161,16 +161,16 @@ pub fn follow_until_it_repeats(
     let mut repeats = Repeats::new(system, settings, ahead);
     let mut now = Motion::start(system);
     if window.from > 0.0 {
-        now = hybrid.propagate_for(now, window.from, &mut (before, &mut repeats))?;
+        now = hybrid.propagate_for(now, window.from, before, Some(&mut repeats))?;
     }
     if repeats.known.is_none() {
-        now = hybrid.propagate_for(now, window.to, &mut (&mut *observer, &mut repeats))?;
+        now = hybrid.propagate_for(now, window.to, observer, Some(&mut repeats))?;
     }
     match repeats.known.filter(|_| !observer.satisfied()) {
         None => {}
         Some(Known::Converges(Converging { late, repeats })) => {
-            now = hybrid.propagate_for(late, window.from, &mut Unobserved)?;
-            now = hybrid.propagate_for(now, repeats, observer)?;
+            now = hybrid.propagate(late, window.from, &mut Unobserved)?;
+            now = hybrid.propagate_for(now, repeats, observer, None)?;
         }
         Some(Known::Repeats(periods)) => {
             let span = periods as f64 * period;
@@ -182,7 +182,7 @@ pub fn follow_until_it_repeats(
                 [now.t, from + span]
             };
             if begin < end {
-                now = hybrid.propagate_for(Motion { t: begin, ..now }, end, observer)?;
+                now = hybrid.propagate_for(Motion { t: begin, ..now }, end, observer, None)?;
             }
         }
     }
