@@ -60,6 +60,12 @@ pub static KIND: Kind = Kind {
 /// # Errors
 /// The study is wrong, nothing can be computed, or the results cannot be written.
 pub fn reproduce(request: &Request, only: Option<&str>, watch: &dyn Observer) -> Result<Done<()>, Error> {
+    if let Some(unknown) = only.filter(|only| ENTRIES.iter().all(|entry| entry.name != *only)) {
+        let all: Vec<&str> = ENTRIES.iter().map(|entry| entry.name).collect();
+        let problem =
+            format!("\"{unknown}\" is no table or figure of the paper: give one of {}", all.join(", "));
+        return Err(Error::Requirement { place: "only".to_owned(), problem });
+    }
     let plan = Plan::read(&request.study, watch)?;
     let dampers = [("SSVI NES", &plan.ssvi), ("TMD", &plan.tmd)];
     let mut job = Job::of_studies(&KIND, request, serde_json::json!(plan.file), dampers.into_iter())?;

@@ -181,7 +181,7 @@ pub fn write_rows(
     }
     let mut written = push("t,x1,v1,x2,v2,E1,E2,FconL,FconR,moment\n");
     let mut row = |sample: &Sample| {
-        let Sample { t, state: [x1, v1, x2, v2], e1, e2, forces: [left, right], moment } = sample;
+        let Sample { t, state: [x1, v1, x2, v2], e1, e2, forces: [left, right], moment, .. } = sample;
         if written.is_ok() {
             let moment = moment.name();
             written = push(&format!("{t},{x1},{v1},{x2},{v2},{e1},{e2},{left},{right},{moment}\n"));

@@ -31,11 +31,16 @@ impl Mode {
         })
     }
 
-    /// The displacement at the damper by a harmonic force of 1 N there at the angular frequency `omega` (rad/s), m.
-    pub fn flexibility(&self, omega: f64) -> Complex<f64> {
+    /// The dynamic stiffness of the mode in its own coordinate at the angular frequency `omega` (rad/s), N/m; zero at the resonance of one without damping.
+    fn stiffness(&self, omega: f64) -> Complex<f64> {
         let own = self.omega.get();
-        let stiffness = Complex::new(own * own - omega * omega, 2.0 * self.zeta.get() * own * omega);
-        self.shape * self.shape / (self.mass.get() * stiffness)
+        self.mass.get() * Complex::new(own * own - omega * omega, 2.0 * self.zeta.get() * own * omega)
+    }
+
+    /// The displacement at the damper by a harmonic force of 1 N there at the angular frequency `omega` (rad/s), m; not finite at the resonance of a mode
+    /// without damping.
+    pub fn flexibility(&self, omega: f64) -> Complex<f64> {
+        self.shape * self.shape / self.stiffness(omega)
     }
 }
 
@@ -45,12 +50,15 @@ pub fn left_out(modes: &[Mode], which: usize) -> f64 {
     let omega = own.omega.get();
     let others =
         modes.iter().enumerate().filter(|(i, _)| *i != which).map(|(_, mode)| mode.flexibility(omega));
-    others.sum::<Complex<f64>>().norm() / own.flexibility(omega).norm()
+    others.sum::<Complex<f64>>().norm() * own.stiffness(omega).norm() / (own.shape * own.shape)
 }
 
 /// The mode that moves the damper's place most by a force there at its own frequency: of the largest `φ² / (2ζ M ω²)`, the first of
 /// equal ones. None of an empty list.
 pub fn most_felt(modes: &[Mode]) -> Option<usize> {
-    let size = |mode: &Mode| mode.flexibility(mode.omega.get()).norm();
+    let size = |mode: &Mode| match mode.shape {
+        0.0 => 0.0,
+        shape => shape * shape / mode.stiffness(mode.omega.get()).norm(),
+    };
     (0..modes.len()).reduce(|most, i| if size(&modes[i]) > size(&modes[most]) { i } else { most })
 }

@@ -2,8 +2,8 @@
 //!
 //! Read `spec` (the specification in a study), `evaluate` (its value for a scene: an `evaluation`), then its parts: `band` (the worst
 //! over frequencies), `ensemble` (a statistic over small errors), `limits`; `design_objective`, the function that searches call; and its
-//! derivatives, `gradient` (of the value) and `pieces` (of each of the peaks that it is the largest of), by which a `descent` goes down.
-//! `needs` has the largest value of every measure.
+//! derivatives, `gradient` (of the value) and `pieces` (of each of the peaks that it is the largest of), by which a `descent` goes down;
+//! where one to the best `tmd` begins. `needs` has the largest value of every measure.
 
 pub mod band;
 pub mod descent;
@@ -18,4 +18,5 @@ pub mod needs;
 pub mod pieces;
 pub mod runs;
 pub mod spec;
+pub mod tmd;
 pub mod unusable;

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
 use retune_jobs::sweep::{Plan, Sweep};
-use retune_model::Parameter;
+use retune_model::{Parameter, Side};
 use retune_optim::Scale;
 use retune_solver::{Moment, Rows, Sample, trajectory};
 use retune_study::Study;
@@ -19,8 +19,8 @@ const MOST_ROWS: f64 = 1e7;
 /// The columns of a motion.
 const COLUMNS: [&str; 9] = ["t", "x1", "v1", "x2", "v2", "E1", "E2", "FconL", "FconR"];
 
-/// What came of a run: its rows, its events, the name of each event, and its summary as JSON.
-type Ran<'py> = (Bound<'py, PyDict>, Bound<'py, PyDict>, Vec<&'static str>, String);
+/// What came of a run: its rows, its events, the name of each event and the wall of its contact, and its summary as JSON.
+type Ran<'py> = (Bound<'py, PyDict>, Bound<'py, PyDict>, Vec<(&'static str, &'static str)>, String);
 /// The columns of a sweep, and the unit of each.
 type Swept<'py> = (Bound<'py, PyDict>, Vec<(String, String)>);
 
@@ -40,7 +40,12 @@ pub fn run<'py>(
     let (summary, samples) = on_pool(py, &*pool(None)?, move |_| moved(&study, interval))?;
     let (grid, events): (Vec<_>, Vec<_>) =
         samples.into_iter().partition(|sample| sample.moment == Moment::Grid);
-    let names = events.iter().map(|sample| sample.moment.name()).collect();
+    let wall = |sample: &Sample| match sample.wall {
+        Some(Side::Primary) => "structure",
+        Some(Side::Obstacle) => "obstacle",
+        None => "",
+    };
+    let names = events.iter().map(|sample| (sample.moment.name(), wall(sample))).collect();
     Ok((columns(py, &grid)?, columns(py, &events)?, names, summary))
 }
 

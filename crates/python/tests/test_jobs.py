@@ -257,6 +257,11 @@ def test_contract_a_design_is_that_of_the_command_line(program: Path, tmp_path: 
     with pytest.raises(rt.StudyError, match="mass: 900 is more than the structure") as caught:
         rt.design(structure, tmp_path / "heavy", P=800, band=(5, 8), mass=900)
     assert caught.value.field == "mass"
+    assert design._repr_html_().count("5 to 8 rad/s") == 1
+    with pytest.raises(rt.StudyError, match="stroke is limited twice|is limited twice, to 0.5 mm and to 2 mm"):
+        rt.design(structure, tmp_path / "twice", P=800, mass="5 %", stroke="2 mm", limits={"stroke": "0.5 mm"})
+    with pytest.raises(rt.Error, match='"figure99" is no table or figure of the paper'):
+        rt.reproduce("figure99", tmp_path / "none", study=STUDIES / "paper.json", progress=False)
 
 
 def test_contract_jobs_on_files_have_the_bytes_of_the_command_line(program: Path, tmp_path: Path) -> None:

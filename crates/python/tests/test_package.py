@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import doctest
 import inspect
 import json
 import pickle
@@ -18,7 +19,7 @@ import pytest
 from conftest import ROOT, STUDIES
 
 import retune as rt
-from retune import _run, _scene
+from retune import _forcing, _run, _scene
 
 
 def test_contract_the_wheel_is_for_every_later_python() -> None:
@@ -89,13 +90,22 @@ def test_contract_a_strength_and_a_density_change_no_motion() -> None:
         rt.Contact(rigid=0.7, density=1200)
 
 
+@pytest.mark.parametrize("module", [rt, _forcing])
+def test_exact_examples_in_docstrings(module: Any) -> None:
+    assert doctest.testmod(module).failed == 0
+
+
 def test_contract_rigid_walls() -> None:
     study = rt.Problem.from_study(STUDIES / "ssvi-rigid.json")
     damper = rt.SSVI(60, k2=583.9, c2=94.97, D=0.02885, C=1.105, contact=rt.Contact(rigid=0.7))
     own = rt.Problem(rt.Structure(m1=1000, c1=452, k1=39500), damper, P=800, omega=6.28, window=(50, 100))
     assert own.simulate().maxima["E1max"] == study.simulate().maxima["E1max"]
     assert study.simulate(restitution=0.0).maxima["E1max"] > study.simulate().maxima["E1max"]
-    assert "0.7" in repr(rt.Contact(rigid=0.7))
+    contacts = study.simulate().contacts
+    assert set(contacts.wall) == {"structure"} and np.isinf(contacts.force).all()
+    assert (contacts.touch_down == contacts.lift_off).all()
+    shown = repr(rt.Contact(rigid=0.7))
+    assert "0.7" in shown and "E1" not in shown
     with pytest.raises(rt.StudyError, match="restitution"):
         rt.Contact(rigid=1.2)
 

@@ -136,6 +136,18 @@ def test_contract_a_run_is_that_of_the_command_line(program: Path, tmp_path: Pat
     assert (run.contacts.lift_off > run.contacts.touch_down)[:-1].all()
 
 
+def test_contract_a_contact_that_the_window_cuts_has_its_wall_and_no_force_beyond() -> None:
+    study = json.loads((STUDIES / "ssvi-resonance.json").read_text())
+    whole = rt.Problem.from_study(study).simulate().contacts
+    assert whole.rows > 20
+    study["window"] = {"t0": whole.lift_off[5] - 1e-4, "T": whole.touch_down[9] + 1e-4}
+    cut = rt.Problem.from_study(study).simulate().contacts
+    assert cut.wall.tolist() == whole.wall[5:10].tolist()
+    assert np.isnan(cut.force[[0, -1]]).all()
+    np.testing.assert_allclose(cut.force[1:-1], whole.force[6:9], rtol=1e-9)
+    assert np.isnan(cut.touch_down[0]) and np.isnan(cut.lift_off[-1])
+
+
 def test_contract_a_sweep_is_that_of_the_command_line(program: Path, tmp_path: Path) -> None:
     study = STUDIES / "ssvi-resonance.json"
     out = tmp_path / "sweep"

@@ -53,6 +53,8 @@ pub struct Sample {
     pub forces: [f64; 2],
     /// Why it is recorded.
     pub moment: Moment,
+    /// The wall of the contact that it is a moment of; none of [`Moment::Grid`] and [`Moment::EnergyMax`].
+    pub wall: Option<Side>,
 }
 
 /// The moments to record within a window.
@@ -120,7 +122,7 @@ impl Recorded<2> for Bare {
     fn sample(&self, knot: &Knot<2>, moment: Moment) -> Sample {
         let [x1, v1] = knot.y;
         let e1 = self.primary_energy(x1, v1);
-        Sample { t: knot.t, state: [x1, v1, 0.0, 0.0], e1, e2: 0.0, forces: [0.0; 2], moment }
+        Sample { t: knot.t, state: [x1, v1, 0.0, 0.0], e1, e2: 0.0, forces: [0.0; 2], moment, wall: None }
     }
     fn power(&self, knot: &Knot<2>) -> f64 {
         self.primary_energy_rates(knot.excitation, &knot.y)[1]
@@ -139,6 +141,7 @@ impl Recorded<4> for Coupled {
             e2: self.damper_energy_rates(knot.excitation, &knot.y)[0],
             forces: self.wall_reactions(knot.excitation, &knot.y),
             moment,
+            wall: None,
         }
     }
     fn power(&self, knot: &Knot<4>) -> f64 {
@@ -159,8 +162,8 @@ struct Recorder<'a, S, const N: usize> {
     last: Option<Knot<N>>,
     /// The wall in contact, and the largest indentation of this contact.
     contact: Option<(Side, f64)>,
-    /// Whether a rigid wall holds the damper.
-    held: bool,
+    /// The rigid wall that holds the damper.
+    held: Option<Side>,
 }
 
 /// Share of the largest indentation below which a contact has ended.
@@ -168,22 +171,22 @@ const LEFT: f64 = 1e-9;
 
 impl<'a, S: Recorded<N>, const N: usize> Recorder<'a, S, N> {
     fn new(system: &'a S, start: f64, rows: Rows, visit: &'a mut dyn FnMut(&Sample)) -> Self {
-        Self { system, start, rows, next: 0.0, visit, last: None, contact: None, held: false }
+        Self { system, start, rows, next: 0.0, visit, last: None, contact: None, held: None }
     }
 
-    fn show(&mut self, knot: &Knot<N>, moment: Moment) {
-        (self.visit)(&self.system.sample(knot, moment));
+    fn show(&mut self, knot: &Knot<N>, moment: Moment, wall: Option<Side>) {
+        (self.visit)(&Sample { wall, ..self.system.sample(knot, moment) });
     }
 
-    /// Shows a moment that is no grid point, if they are asked for.
-    fn event(&mut self, knot: &Knot<N>, moment: Moment) {
+    /// Shows a moment of a contact, if they are asked for.
+    fn event(&mut self, knot: &Knot<N>, moment: Moment, wall: Side) {
         if self.rows.events {
-            self.show(knot, moment);
+            self.show(knot, moment, Some(wall));
         }
     }
 
-    /// The moments in a piece, in the order of time.
-    fn moments(&mut self, segment: &dyn Segment<N>) -> Vec<(Knot<N>, Moment)> {
+    /// The moments in a piece, in the order of time, each with the wall of its contact.
+    fn moments(&mut self, segment: &dyn Segment<N>) -> Vec<(Knot<N>, Moment, Option<Side>)> {
         const SAMPLES: usize = 4;
         let [from, to] = segment.ends();
         let theta = |number: usize| segment.length() * number as f64 / SAMPLES as f64;
@@ -194,17 +197,17 @@ impl<'a, S: Recorded<N>, const N: usize> Recorder<'a, S, N> {
             _ => segment.at(places[number]),
         });
         let mut moments = Vec::new();
-        let mut maxima = |rate: &dyn Fn(&Knot<N>) -> f64, moment: Moment| {
+        let mut maxima = |rate: &dyn Fn(&Knot<N>) -> f64, moment: Moment, wall: Option<Side>| {
             let rates = knots.map(|knot| rate(&knot));
             for number in 0..SAMPLES {
                 let [from, to] = [number, number + 1].map(|number| (places[number], rates[number]));
                 if from.1 > 0.0 && to.1 <= 0.0 {
                     let place = falls(|theta| rate(&segment.at(theta)), from, to);
-                    moments.push((segment.at(place), moment));
+                    moments.push((segment.at(place), moment, wall));
                 }
             }
         };
-        maxima(&|knot| self.system.power(knot), Moment::EnergyMax);
+        maxima(&|knot| self.system.power(knot), Moment::EnergyMax, None);
         // A damper that rests on a wall from the start is in contact without a touch-down.
         let depth = |side: Side| knots.map(|knot| self.system.depth(&knot, side)[0]);
         let deepest = |side: Side| depth(side).into_iter().fold(0.0, f64::max);
@@ -212,9 +215,9 @@ impl<'a, S: Recorded<N>, const N: usize> Recorder<'a, S, N> {
             .contact
             .or_else(|| Side::BOTH.into_iter().find(|&side| deepest(side) > 1e-12).map(|side| (side, 0.0)));
         if let Some((side, before)) = contact {
-            maxima(&|knot| self.system.depth(knot, side)[1], Moment::ForceMax);
+            maxima(&|knot| self.system.depth(knot, side)[1], Moment::ForceMax, Some(side));
             // Rounding makes no contact.
-            moments.retain(|(knot, moment)| {
+            moments.retain(|(knot, moment, _)| {
                 *moment != Moment::ForceMax || self.system.depth(knot, side)[0] > 0.0
             });
             let deepest = deepest(side).max(before);
@@ -222,10 +225,10 @@ impl<'a, S: Recorded<N>, const N: usize> Recorder<'a, S, N> {
             let left = deepest > 0.0 && rate < 0.0 && depth <= LEFT * deepest;
             self.contact = (!left).then_some((side, deepest));
             if left {
-                moments.push((*to, Moment::LiftOff));
+                moments.push((*to, Moment::LiftOff, Some(side)));
             }
         }
-        moments.sort_by(|(a, _), (b, _)| a.t.total_cmp(&b.t));
+        moments.sort_by(|(a, ..), (b, ..)| a.t.total_cmp(&b.t));
         moments
     }
 }
@@ -233,17 +236,18 @@ impl<'a, S: Recorded<N>, const N: usize> Recorder<'a, S, N> {
 impl<S: Recorded<N>, const N: usize> Observer<N> for Recorder<'_, S, N> {
     fn segment(&mut self, segment: &dyn Segment<N>) {
         let [from, to] = segment.ends();
-        if self.held && segment.in_flight() {
-            self.held = false;
-            self.event(from, Moment::LiftOff);
+        if segment.in_flight()
+            && let Some(wall) = self.held.take()
+        {
+            self.event(from, Moment::LiftOff, wall);
         }
         let moments = if self.rows.events { self.moments(segment) } else { Vec::new() };
         let mut moments = moments.into_iter().peekable();
         loop {
             let t = self.start + self.next * self.rows.interval;
             let row = t.min(to.t);
-            while let Some((knot, moment)) = moments.next_if(|(knot, _)| knot.t < row || t > to.t) {
-                self.show(&knot, moment);
+            while let Some((knot, moment, wall)) = moments.next_if(|(knot, ..)| knot.t < row || t > to.t) {
+                self.show(&knot, moment, wall);
             }
             if t > to.t {
                 break;
@@ -255,7 +259,7 @@ impl<S: Recorded<N>, const N: usize> Observer<N> for Recorder<'_, S, N> {
             } else {
                 segment.at_time(t)
             };
-            self.show(&knot, Moment::Grid);
+            self.show(&knot, Moment::Grid, None);
             self.next += 1.0;
         }
         self.last = Some(*to);
@@ -264,15 +268,15 @@ impl<S: Recorded<N>, const N: usize> Observer<N> for Recorder<'_, S, N> {
     fn touch_down(&mut self, _t: f64, side: Side) {
         self.contact = Some((side, 0.0));
         if let Some(knot) = self.last {
-            self.event(&knot, Moment::TouchDown);
+            self.event(&knot, Moment::TouchDown, side);
         }
     }
 
     fn impact(&mut self, impact: &Impact<N>) {
-        (self.contact, self.held) = (None, impact.caught);
+        (self.contact, self.held) = (None, impact.caught.then_some(impact.side));
         self.last = Some(impact.after);
         if !impact.caught {
-            self.event(&impact.after, Moment::LiftOff);
+            self.event(&impact.after, Moment::LiftOff, impact.side);
         }
     }
 }

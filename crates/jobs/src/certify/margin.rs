@@ -6,7 +6,7 @@ use crate::amount::Amount;
 use rayon::prelude::*;
 use retune_dynamics::periodic::branches::equations;
 use retune_dynamics::periodic::{Onset, Orbit, Seed, onset};
-use retune_model::{Measure, Parameter};
+use retune_model::{Forcing, Measure, Parameter};
 use retune_optim::Unusable;
 use retune_solver::Settings;
 use retune_study::Margins;
@@ -94,13 +94,14 @@ impl Place {
 
 impl Margin {
     /// Before any motion is found.
-    pub(super) fn new(needed: &Margins) -> Self {
+    pub(super) fn new(needed: &Margins, forcing: &Forcing) -> Self {
         Self {
             needed_force: 1.0 + needed.force,
             forces: vec![1.0 + needed.force],
             safe_to: 1.0 + needed.force,
             other: None,
             needed_percent: 100.0 * needed.errors,
+            amplitude: forcing.amplitude().map(|(parameter, _)| parameter),
             parameters: Vec::new(),
         }
     }

@@ -95,8 +95,9 @@ pub(super) fn coexisting(
     let is_safe = |(place, found): (&Place, &AtForce)| {
         found.branches.largest(measure).is_none_or(|one| one.value <= NOTABLE * place.from_rest)
     };
-    let mut margin =
-        needed.filter(|_| places.iter().zip(&here).all(is_safe)).map(|needed| Margin::new(&needed));
+    let mut margin = needed
+        .filter(|_| places.iter().zip(&here).all(is_safe))
+        .map(|needed| Margin::new(&needed, &scene.forcing));
     if let Some(margin) = &mut margin {
         let mut there = margin.lower(&places, &more, measure, settings)?;
         if margin.other.is_none() && first < MORE {

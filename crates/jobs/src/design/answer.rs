@@ -321,8 +321,9 @@ fn costs(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
             words.push(cost(&compared.tmd, &of.tmd));
         } else if of.tmd.feasible {
             let (name, has) = (goal.name(), said(&of.tmd));
+            let others = if compared.costs.len() > 1 { " with the others" } else { "" };
             words.push(format!(
-                "is one that no TMD of this mass was found to keep: without it {name} is {has}"
+                "is one that no TMD of this mass was found to keep{others}: without it {name} is {has}"
             ));
         }
         if let Some(own) = compared.chosen().filter(|chosen| chosen.what == What::Ssvi) {

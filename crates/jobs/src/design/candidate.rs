@@ -2,9 +2,9 @@
 
 use super::settled::settled;
 use crate::Error;
-use retune_model::{Damper, Design, Forcing, Measure, Parameter, PerMeasure, Scene, Source};
+use retune_model::{Damper, Design, Forcing, Measure, Parameter, PerMeasure, Positive, Scene, Source};
 use retune_optim::{Goal, Limit, Limits, Need, Stiffnesses, Unusable};
-use retune_study::{Rule, Setting, Study};
+use retune_study::{Rule, Study};
 use serde::Serialize;
 
 /// A candidate is measured on so many times the samples of a search.
@@ -69,7 +69,6 @@ impl Candidate {
         let mut steady = goal.own_needs(&study.scene, &settings, &|| true)?;
         let found = goal.evaluate(&study.scene, &settings, f64::INFINITY)?;
         let limits = goal.limits;
-        let is_damper = study.scene.damper.is_some();
         let binding =
             limits.active(&found.reached).into_iter().map(|limit| (limit, found.reached.get(limit)));
         for measure in Measure::ALL {
@@ -83,7 +82,7 @@ impl Candidate {
         Ok(Self {
             what,
             goal: if best.is_finite() && best > 0.0 { best } else { found.value },
-            feasible: is_damper && found.violation == 0.0,
+            feasible: found.violation == 0.0,
             binding: binding.collect(),
             steady,
             from_rest: None,
@@ -114,16 +113,21 @@ impl Candidate {
         (value.is_finite() && value > 0.0).then_some(value)
     }
 
-    /// The goal, in its unit, with k1 of the structure off by each of some shares of it; NaN where it has no bound.
-    pub fn with_k1_off<const N: usize>(&self, shares: [f64; N]) -> [f64; N] {
-        let mut study = self.study.clone();
-        if let Some(optimize) = &mut study.optimize {
-            optimize.objective.k1 = None;
-        }
-        let k1 = study.scene.primary.stiffness.get();
+    /// The goal, in its unit, with k1 of the structure off by each of some shares of it, from the runs that the largest over all k1 is of; NaN where it has
+    /// no bound. A larger one than was known becomes that largest.
+    pub fn with_k1_off<const N: usize>(&mut self, shares: [f64; N]) -> [f64; N] {
+        let (quantity, settings) = (self.study.quantity(), self.study.solver.settings());
         shares.map(|share| {
-            let scene = study.scene_with(&[Setting::new(Parameter::K1, k1 * (1.0 + share))]).ok();
-            scene.and_then(|scene| study.energy(&scene)).unwrap_or(f64::NAN)
+            let mut goal = on_many_samples(&self.study);
+            let k1 = Positive::new(self.study.scene.primary.stiffness.get() * (1.0 + share)).ok();
+            goal.objective.for_each_term(&mut |term| term.k1 = k1.map(|k1| Stiffnesses::Set(vec![k1])));
+            let needs = goal.own_needs(&self.study.scene, &settings, &|| true);
+            let Ok(need) = needs.map(|needs| needs.get(quantity)) else { return f64::NAN };
+            if need.value > self.goal {
+                self.goal = need.value;
+                self.steady.set(quantity, need);
+            }
+            need.value
         })
     }
 

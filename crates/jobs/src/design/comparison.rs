@@ -134,9 +134,9 @@ pub(super) fn compare(
         watch.result(&line)?;
     }
     let bare = Study { scene: Scene { damper: None, ..tmd_study.scene }, ..tmd_study.clone() };
-    let none = Candidate::new(What::None, &bare)?;
+    let mut none = Candidate::new(What::None, &bare)?;
     let formulas = Formula::all(requirements, &tmd_study.scene.primary);
-    let tmd = tmd_of(tmd_study, tmd::best(tmd_study, &formulas)?)?;
+    let mut tmd = tmd_of(tmd_study, tmd::best(tmd_study, &formulas)?)?;
     let formulas =
         formulas.into_iter().map(|formula| by(requirements, tmd_study, formula)).collect::<Result<_, _>>()?;
     let kept = if tmd.feasible { "" } else { " (breaks a limit)" };
@@ -171,9 +171,9 @@ pub(super) fn compare(
     let choice = choice(requirements, &tmd, ssvi.as_ref(), is_trusted);
     let built = ssvi.as_ref().filter(|_| choice == Some(What::Ssvi));
     let costs = costs(requirements, (&tmd, built), journal, watch)?;
-    let all = [Some(&none), Some(&tmd), ssvi.as_ref()];
+    let all = [Some(&mut none), Some(&mut tmd), ssvi.as_mut()];
     let detuned = match requirements.k1_error {
-        Some(error) => all.iter().flatten().map(|of| of.with_k1_off([0.0, -error, error])).collect(),
+        Some(error) => all.into_iter().flatten().map(|of| of.with_k1_off([0.0, -error, error])).collect(),
         None => Vec::new(),
     };
     let lightest = if tmd.feasible { None } else { lightest(requirements, watch)? };
@@ -329,8 +329,9 @@ impl Serialize for Comparison {
             .collect();
         let mut all = json!({
             "goal": self.goal,
-            "build": self.choice,
-            "certificate": self.certificate.as_ref().map(Certificate::short),
+            "build": self.choice.filter(|_| !self.is_in_vain()),
+            "in_vain": self.is_in_vain(),
+            "certificate": self.certificate.as_ref().filter(|_| !self.is_in_vain()).map(Certificate::short),
             "SSVI_NES_certificate": self.ssvi_certificate.as_ref().map(Certificate::short),
             "candidates": self.all().map(data).collect::<Vec<_>>(),
             "formulas": self.formulas.iter().map(by).collect::<Vec<_>>(),

@@ -54,6 +54,9 @@ fn modes(text: &str) -> Result<Vec<Mode>, String> {
     let mut places = [0; COLUMNS.len()];
     for (place, column) in places.iter_mut().zip(COLUMNS) {
         let found = names.iter().position(|name| name == column);
+        if names.iter().filter(|name| *name == column).count() > 1 {
+            return Err(format!("has the column {column} twice: give it once"));
+        }
         *place = found.ok_or_else(|| {
             let have: Vec<&str> = names.iter().collect();
             format!(
@@ -72,7 +75,9 @@ fn modes(text: &str) -> Result<Vec<Mode>, String> {
             number.ok_or_else(|| wrong(column, format!("\"{field}\" is not a number")))
         };
         Ok(Mode {
-            omega: Positive::new(TAU * at(0)?).map_err(|error| wrong(0, error.to_string()))?,
+            omega: Positive::new(at(0)?)
+                .and_then(|f| Positive::new(TAU * f.get()))
+                .map_err(|error| wrong(0, error.to_string()))?,
             zeta: NonNegative::new(at(1)?).map_err(|error| wrong(1, error.to_string()))?,
             mass: Positive::new(at(2)?).map_err(|error| wrong(2, error.to_string()))?,
             shape: at(3)?,

@@ -9,7 +9,7 @@ use retune_model::{
     Bare, Forcing, Loss, Measure, NonNegative, PerMeasure, PoissonRatio, Positive, Primary, Restitution,
     Scene, Surfaces, den_hartog,
 };
-use retune_optim::{Band, Limit, Limits};
+use retune_optim::{Band, Limit, Limits, springs_for};
 use retune_solver::{Also, Ask, Settings, Window, extremes};
 use retune_study::Study;
 use retune_study::read::from_text;
@@ -126,7 +126,7 @@ const PERIODS: f64 = 100.0;
 /// Stiffnesses of a structure whose k1 may be off; of a TMD in closed form the largest value is searched between them, too.
 const STIFFNESSES: usize = 17;
 /// Largest dashpot of a TMD, in those of Den Hartog's: it all but holds the mass to the structure, so that its stroke is small.
-const HELD: f64 = 1e4;
+pub(super) const HELD: f64 = 1e4;
 /// Damping that an undamped structure counts as when gaps and tolerances are scaled.
 const LEAST_DAMPING: f64 = 0.01;
 
@@ -203,6 +203,12 @@ impl Requirements {
         })
     }
 
+    /// The band of a harmonic in multiples of its natural frequency.
+    fn driven(&self) -> [f64; 2] {
+        let natural = self.natural_frequency();
+        self.driving.band().map_or([1.0; 2], |band| band.map(|omega| omega / natural))
+    }
+
     /// What moves it; a harmonic at the frequency of the band that is nearest to its own.
     fn forcing(&self) -> Result<Forcing, Error> {
         self.driving.forcing(self.natural_frequency())
@@ -233,7 +239,9 @@ impl Requirements {
     /// The study of the TMD, k2 and c2 free, without walls: steady, in closed form, or the run under a shock or a record.
     pub fn tmd(&self) -> Result<Study, Error> {
         let ([k2, c2], _, size) = self.scales()?;
-        let most = self.k2_max.unwrap_or(20.0 * k2);
+        let stiffest = |factor: f64| springs_for([1.0, factor], self.driven())[1];
+        let most = self.k2_max.unwrap_or(stiffest(20.0) * k2);
+        let softest = springs_for([0.05, 1.0], self.driven())[0];
         let axis = |from: f64, to: f64| json!({ "from": from, "to": to, "points": 21, "scale": "log" });
         // A TMD touches nothing; of a cavity its stroke takes half.
         let mut limits = self.limits;
@@ -253,7 +261,7 @@ impl Requirements {
             "objective": self.objective(true),
             "bounds": { "k2": [0, most], "c2": [0, HELD * c2] },
             "limits": kept.into_iter().map(|limit| (limit.name().to_owned(), json!(limits.get(limit)))).collect::<serde_json::Map<_, _>>(),
-            "surf": { "k2": axis(0.05 * k2.min(most), (4.0 * k2).min(most)), "c2": axis(0.05 * c2, 20.0 * c2) },
+            "surf": { "k2": axis(softest * k2.min(most), (stiffest(4.0) * k2).min(most)), "c2": axis(0.05 * c2, 20.0 * c2) },
             "refine": { "starts": 3, "scaled": true, "TolX": 1e-10, "TolFun": 1e-12 * size }
         });
         self.study("tmd", json!({ "m2": self.mass, "k2": k2.min(most), "c2": c2 }), optimize)
@@ -262,7 +270,7 @@ impl Requirements {
     /// The study of the SSVI NES: runs from rest, all four parameters free.
     pub fn ssvi(&self) -> Result<Study, Error> {
         let ([k2, c2], reach, size) = self.scales()?;
-        let most = self.k2_max.unwrap_or(4.0 * k2);
+        let most = self.k2_max.unwrap_or(springs_for([1.0, 4.0], self.driven())[1] * k2);
         let axis = |from: f64, to: f64, scale: &str, points: u32| json!({ "from": from, "to": to, "points": points, "scale": scale });
         let stiffest = k2.min(most);
         let mut limits = json!(self.limits);

@@ -2,7 +2,7 @@
 //! the formulas of textbooks. It takes milliseconds; under a shock or a record, whose runs are followed in time, seconds.
 
 use super::candidate::at_few_stiffnesses;
-use super::requirements::Requirements;
+use super::requirements::{HELD, Requirements};
 use crate::Error;
 use crate::tune::objective::searched;
 use rayon::prelude::*;
@@ -11,13 +11,11 @@ use retune_optim::{INFEASIBLE, Point, minimize};
 use retune_study::{Search, Study};
 use std::ops::ControlFlow;
 
-/// Points of the grid along k2 and c2, from and to these multiples of Den Hartog's.
-const POINTS: usize = 16;
-const RANGE: [[f64; 2]; 2] = [[0.05, 5.0], [0.05, 1e4]];
-/// That of k2 under a shock or a record, which a spring much stiffer may suit.
-const RANGE_IN_TIME: [f64; 2] = [0.05, 20.0];
-/// Points of the grid from which descents begin.
-const BEST: usize = 3;
+/// The springs and dashpots of the grid, in those of Den Hartog's; under a shock or a record a spring much stiffer may be best.
+const TUNINGS: [[f64; 2]; 2] = [[0.05, 5.0], [0.05, HELD]];
+const TUNINGS_IN_TIME: [[f64; 2]; 2] = [[0.05, 20.0], [0.05, HELD]];
+/// Valleys of the grid in which descents begin.
+const VALLEYS: usize = 3;
 
 /// A formula for an undamped structure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,26 +70,14 @@ pub(super) fn best(study: &Study, formulas: &[Formula]) -> Result<[f64; 2], Erro
     let within = |x: [f64; 2]| {
         let one =
             |i: usize| x[i].clamp(bounds[i].lower.unwrap_or(0.0), bounds[i].upper.unwrap_or(f64::INFINITY));
-        [one(0), one(1)]
+        vec![one(0), one(1)]
     };
-    let at = |number: usize| {
-        let one = |axis: usize, step: usize| {
-            let [from, to] = if is_transient && axis == 0 { RANGE_IN_TIME } else { RANGE[axis] };
-            scales[axis] * from * (to / from).powf(step as f64 / (POINTS - 1) as f64)
-        };
-        let x = within([one(0, number % POINTS), one(1, number / POINTS)]);
-        (objective.value(&x, f64::INFINITY), x)
-    };
-    let mut grid: Vec<(f64, [f64; 2])> = (0..POINTS * POINTS).into_par_iter().map(at).collect();
-    if is_transient {
-        grid = valleys(&grid);
-    }
-    grid.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let starts: Vec<[f64; 2]> = std::iter::once(within(scales))
+    let valleys = objective.valleys(if is_transient { TUNINGS_IN_TIME } else { TUNINGS }, bounds);
+    let starts: Vec<Vec<f64>> = std::iter::once(within(scales))
         .chain(formulas.iter().map(|formula| within([formula.k2, formula.c2])))
-        .chain(grid.iter().take(BEST).map(|(_, x)| *x))
+        .chain(valleys.into_iter().take(VALLEYS).map(|(_, x)| x))
         .collect();
-    let down = |start: &[f64; 2]| {
+    let down = |start: &Vec<f64>| {
         if is_transient {
             return simplex(|x, cutoff| objective.value(x, cutoff), &search, start);
         }
@@ -108,17 +94,6 @@ pub(super) fn best(study: &Study, formulas: &[Formula]) -> Result<[f64; 2], Erro
         }
     }
     Ok(best.and_then(|end| <[f64; 2]>::try_from(end.x).ok()).unwrap_or(scales))
-}
-
-/// The points of the grid that are no worse than those around them.
-fn valleys(grid: &[(f64, [f64; 2])]) -> Vec<(f64, [f64; 2])> {
-    let beside = |number: usize| {
-        let (i, j) = (number % POINTS, number / POINTS);
-        let around = |at: usize| at.saturating_sub(1)..=(at + 1).min(POINTS - 1);
-        around(j).flat_map(move |j| around(i).map(move |i| j * POINTS + i))
-    };
-    let is_least = |number: &usize| beside(*number).all(|other| grid[*number].0 <= grid[other].0);
-    (0..grid.len()).filter(is_least).map(|number| grid[number]).collect()
 }
 
 /// What goes down where there are no derivatives, under a shock and a record: the end of the refinement of a search from a start; the start itself

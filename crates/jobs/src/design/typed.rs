@@ -171,7 +171,7 @@ impl Specification {
         ]
     }
 
-    /// The limits in the order in which they are given, each with its name: those of the file, then those as typed, which replace them.
+    /// The limits, each with its name: those of the file, then those as typed, which replace them. One place gives one limit of a quantity.
     pub(super) fn all_limits(&self) -> Result<Vec<(String, Typed)>, Error> {
         let mut all = Vec::new();
         for (name, value) in &self.limits {
@@ -192,6 +192,19 @@ impl Specification {
         for (name, typed) in [("stroke", &self.stroke), ("k2", &self.k2_max)] {
             all.extend(typed.clone().map(|typed| (name.to_owned(), typed)));
         }
+        let plain = |name: &str| name.replace('-', "_");
+        for (number, (name, typed)) in all.iter().enumerate() {
+            let twice =
+                |(other, before): &&(String, Typed)| plain(other) == plain(name) && before.file == typed.file;
+            if let Some((_, before)) = all[..number].iter().find(twice) {
+                let problem = format!(
+                    "is limited twice, to {} and to {}: give one limit of it",
+                    before.text, typed.text
+                );
+                return Err(typed.refused(&format!("limit {}", plain(name)), problem));
+            }
+        }
+        all.sort_by_key(|(_, typed)| typed.file.is_none());
         Ok(all)
     }
 }

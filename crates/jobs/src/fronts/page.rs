@@ -83,8 +83,9 @@ fn made(fronts: &Fronts, names: &[&str]) -> String {
     }
     for (damper, name) in names.iter().enumerate() {
         if fronts.is_steady(damper) {
-            text +=
-                &format!(" The {name} is taken in its steady motion, in closed form, and touches nothing.");
+            text += &format!(
+                " The {name} is taken in its steady motion, in closed form, and touches nothing; its stroke is that of this motion."
+            );
         }
     }
     text
@@ -140,7 +141,13 @@ fn needs(fronts: &Fronts, sweep: Sweep) -> Block {
         cells.extend(NEEDS.map(|measure| four(none.value(measure))));
         rows.push(cells);
     }
-    Block::table("What they need and what the structure does: the largest from rest on.", head, rows)
+    let steady = (0..fronts.plan.dampers.len()).any(|damper| fronts.is_steady(damper));
+    let but = if steady { ", strokes in a steady motion but for those" } else { "" };
+    Block::table(
+        format!("What they need and what the structure does: the largest from rest on{but}."),
+        head,
+        rows,
+    )
 }
 
 /// The reasons of verdicts other than robust in [`table`], each once.

@@ -201,6 +201,9 @@ fn protocols(plan: &Plan, item: &mut Item) -> Result<(), Error> {
             wanted.extend(BEFORE.map(|share| Protocol { radius, omega, window: window(share) }));
         }
     }
+    if !wanted.contains(&own) {
+        wanted.push(own);
+    }
     let mut all = in_a_stage((plan.watch, "table 1, protocols"), &wanted, |protocol| protocol.run(plan))?;
     all.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
     let count = all.len();

@@ -1,6 +1,6 @@
 //! The tables of `retention`, computed again: the designs, E1max along k1, the retention ranges, smaller forces.
 
-use super::force::under;
+use super::force::{amplitude, under};
 use super::trade::{ENDS, Point};
 use super::tuned::{BANDS, CURVES, DESIGNS, FORCES, RANGES, Tuned, Tuning, bare, energy, label, on_samples};
 use crate::Error;
@@ -72,7 +72,8 @@ fn point(dampers: &[Tuned], row: Row) -> Option<Option<f64>> {
 fn forced(dampers: &[Tuned], row: Row) -> Option<Numbers> {
     let (_, damper) = damper(dampers, row)?;
     let at = damper.of(Tuning::Nominal)?;
-    let found = under(damper.study(), damper.samples, &at, row.text("gaps"), row.number("P"))?;
+    let force = row.number(amplitude(damper.study())?.symbol());
+    let found = under(damper.study(), damper.samples, &at, row.text("gaps"), force)?;
     Some(["E1max", "none"].map(str::to_owned).into_iter().zip(found).collect())
 }
 

@@ -1,6 +1,6 @@
 //! The figures of `retention`: E1max along k1, the re-tuned designs, the least E1max against the retention range, smaller forces.
 
-use super::force::Forced;
+use super::force::{Forced, amplitude};
 use super::retained::Retained;
 use super::trade::Point;
 use super::tuned::{OWN, Tuned, Tuning};
@@ -185,6 +185,8 @@ pub(super) fn range(retained: &Retained) -> Drawing {
 /// E1max of the nominal designs as a share of that without a damper, against the force.
 pub(super) fn force(retained: &Retained) -> Drawing {
     let shown = retained.shown();
+    let amplitude = retained.study().and_then(amplitude).unwrap_or(Parameter::P);
+    let symbol = amplitude.symbol();
     let all = || retained.forced.iter().filter(|of| shown.contains(&of.damper));
     let points = |of: &Forced| -> Vec<(f64, f64)> {
         (0..of.points.len()).map(|step| (of.points[step].0, of.share(step))).collect()
@@ -196,15 +198,20 @@ pub(super) fn force(retained: &Retained) -> Drawing {
     let top = all().flat_map(points).map(|(_, share)| share).fold(0.0, f64::max);
     let right = all().flat_map(points).map(|(force, _)| force).fold(0.0, f64::max);
     let key = |of: &Forced| {
-        let gaps = if of.proportional { ", D and C in proportion to P" } else { "" };
+        let gaps =
+            if of.proportional { format!(", D and C in proportion to {symbol}") } else { String::new() };
         (Key::Line(stroke(of)), format!("{}{gaps}", retained.name(of.damper)))
     };
     let legend = all().map(key).collect();
-    let x = Axis::linear("P, N", (0.0, if right > 0.0 { 1.03 * right } else { 1.0 }));
+    let x = Axis::linear(
+        &format!("{symbol}, {}", amplitude.unit()),
+        (0.0, if right > 0.0 { 1.03 * right } else { 1.0 }),
+    );
     let y = Axis::linear("E1max / without a damper", (0.0, if top > 0.0 { 1.08 * top } else { 1.0 }));
     let layers = all().map(|of| Layer::line(points(of), stroke(of))).collect();
-    let description = "The worst E1max of the nominal designs at the nominal k1, as a share of that without a damper, against the amplitude P of the force"
-        .to_owned();
+    let description = format!(
+        "The worst E1max of the nominal designs at the nominal k1, as a share of that without a damper, against the amplitude {symbol} of the force"
+    );
     let sheet = Sheet::of("What a smaller force leaves of a tuning", vec![Chart::of(x, y, layers, 170.0)]);
     figure(Sheet { description, legend, ..sheet }, retained.study())
 }

@@ -25,7 +25,7 @@ pub struct Forced {
     pub damper: usize,
     /// Whether D and C are in proportion to the force.
     pub proportional: bool,
-    /// The force, N, E1max and that without a damper, J, that of the study first.
+    /// The amplitude of what drives the structure, SI unit, E1max and that without a damper, J, that of the study first.
     pub points: Vec<(f64, [f64; 2])>,
 }
 
@@ -41,12 +41,18 @@ impl Forced {
     }
 }
 
+/// The parameter that says how strongly the structure is driven; none of what is given in time.
+pub fn amplitude(study: &Study) -> Option<Parameter> {
+    study.scene.forcing.amplitude().map(|(parameter, _)| parameter)
+}
+
 /// All nominal designs, and those whose share changes with gaps in proportion to the force, too.
 pub fn forced(dampers: &[Tuned]) -> Vec<Forced> {
     let mut all = Vec::new();
     for (number, damper) in dampers.iter().enumerate() {
         let (at, study) = (damper.of(Tuning::Nominal), damper.study());
-        let Some((at, own)) = at.zip(study.value_of(Parameter::P)) else { continue };
+        let own = amplitude(study).and_then(|amplitude| study.value_of(amplitude));
+        let Some((at, own)) = at.zip(own) else { continue };
         let series = |gaps: &str| {
             let one = |step: i32| {
                 let force = own * 2_f64.powf(-0.25 * f64::from(step));
@@ -63,21 +69,23 @@ pub fn forced(dampers: &[Tuned]) -> Vec<Forced> {
     all
 }
 
-/// E1max of a design under a force (N), and that without a damper, J.
+/// E1max of a design under a force, and that without a damper, J.
 pub fn under(study: &Study, samples: Option<usize>, at: &Design, gaps: &str, force: f64) -> Option<[f64; 2]> {
-    let ratio = force / study.value_of(Parameter::P)?;
+    let amplitude = amplitude(study)?;
+    let ratio = force / study.value_of(amplitude)?;
     let share = |variable: Parameter| match variable {
         Parameter::D | Parameter::C if gaps == GAPS[1] => ratio,
         _ => 1.0,
     };
     let at = Design::new(|variable| share(variable) * at.get(variable)).ok()?;
-    let study = study.with(&[Setting::new(Parameter::P, force)]).ok()?;
+    let study = study.with(&[Setting::new(amplitude, force)]).ok()?;
     let own = study.scene.primary.stiffness.get();
     Some([energy(&study, samples, &at, own)?, bare(&study, own)?])
 }
 
 pub fn table(dampers: &[Tuned], all: &[Forced]) -> Table {
-    let mut table = columns::table(&["damper", "gaps", "P", "E1max"]);
+    let amplitude = dampers.first().and_then(|damper| amplitude(damper.study())).unwrap_or(Parameter::P);
+    let mut table = columns::table(&["damper", "gaps", amplitude.symbol(), "E1max"]);
     table.columns.push(Column::new("none", Measure::Energy.unit()));
     for of in all {
         let (name, gaps) = (dampers[of.damper].name.as_str(), GAPS[usize::from(of.proportional)]);

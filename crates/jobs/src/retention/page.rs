@@ -3,7 +3,7 @@
 
 use super::curves::{Curve, cliffs};
 use super::draw;
-use super::force::{Forced, GAPS, HALF};
+use super::force::{Forced, GAPS, HALF, amplitude};
 use super::range::Range;
 use super::retained::{EQUAL, Retained};
 use super::trade::Point;
@@ -35,7 +35,10 @@ pub(super) fn write(retained: &Retained, directory: &Directory) -> Result<(), Er
         Block::List(retained.shown().into_iter().map(|damper| traded(retained, damper)).collect()),
     ];
     let words = "E1max of the nominal designs as a share of that without a damper";
-    let force = vec![Block::figure("force.svg", draw::force(retained), words), forces(retained)];
+    let mut force = vec![Block::figure("force.svg", draw::force(retained), words), forces(retained)];
+    if retained.forced.is_empty() {
+        force = vec![Block::words("What moves the structure has no amplitude that could be smaller.")];
+    }
     let words = "The re-tuned designs against k1";
     let designs = vec![designs(retained), Block::figure("path.svg", draw::path(retained), words)];
     let files = [DESIGNS, CURVES, RANGES, FORCES, "resolved.json", "manifest.json"];
@@ -170,6 +173,7 @@ fn robust(retained: &Retained, shown: &[usize]) -> Option<String> {
 /// What halving the force does to the nominal designs.
 fn smaller_force(retained: &Retained, shown: &[usize]) -> Option<String> {
     let name = |of: &Forced| retained.name(of.damper);
+    let unit = retained.study().and_then(amplitude).map_or("", Parameter::unit);
     let words = retained.forced.iter().filter(|of| shown.contains(&of.damper)).map(|of| {
         if of.is_constant() {
             return format!("{} {} under any force", name(of), rounded(of.share(0), 3));
@@ -178,7 +182,7 @@ fn smaller_force(retained: &Retained, shown: &[usize]) -> Option<String> {
             let step = half * HALF;
             let force = of.points.get(step).map_or(f64::NAN, |(force, _)| *force);
             // Without the rounding of powers of two.
-            format!("{} at {} N", rounded(of.share(step), 3), short((force * 1e6).round() / 1e6))
+            format!("{} at {} {unit}", rounded(of.share(step), 3), short((force * 1e6).round() / 1e6))
         });
         let gaps = if of.proportional { " with D and C in proportion to the force" } else { "" };
         format!("{}{gaps} {}", name(of), halves.collect::<Vec<_>>().join(", "))
@@ -291,7 +295,10 @@ fn forces(retained: &Retained) -> Block {
     };
     let mut head = vec!["damper".to_owned(), "D and C".to_owned()];
     if let Some(first) = retained.forced.first() {
-        head.extend(first.points.iter().step_by(HALF).map(|(force, _)| format!("{} N", rounded(*force, 4))));
+        let unit = retained.study().and_then(amplitude).map_or("", Parameter::unit);
+        head.extend(
+            first.points.iter().step_by(HALF).map(|(force, _)| format!("{} {unit}", rounded(*force, 4))),
+        );
     }
     let caption =
         "E1max of the nominal designs at the nominal k1 as a share of that without a damper, by the force.";

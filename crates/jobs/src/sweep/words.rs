@@ -111,7 +111,7 @@ pub fn text(sweep: &Sweep, table: &Table, reasons: &[(f64, String)], all: bool) 
     lines.push(String::new());
     let columns = columns(sweep, table);
     lines.extend(header(&columns));
-    let first = shown(sweep).into_iter().next();
+    let (first, alone) = (shown(sweep).into_iter().next(), shown(sweep).len() == 1);
     let end = |numbers: Option<Vec<f64>>, sign| Some(extreme(&numbers?, sign)?.0);
     let high = end(first.as_ref().and_then(|name| table.column(name)), 1.0);
     let low = end(first.as_ref().and_then(|name| kept(table, name, &broken)), -1.0);
@@ -120,6 +120,8 @@ pub fn text(sweep: &Sweep, table: &Table, reasons: &[(f64, String)], all: bool) 
         let mark = match Some(i) {
             _ if broken[i] => BROKEN,
             _ if high == low && breaking == 0 => "",
+            // Of several quantities each has its own, which the answer tells.
+            _ if !alone => "",
             row if row == high => " < largest",
             row if row == low => SMALLEST,
             _ => "",

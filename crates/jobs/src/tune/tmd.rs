@@ -1,12 +1,11 @@
 //! The best TMD that a damper with walls can be: its gaps as wide as bounds and limits allow, its spring and dashpot the best in closed form.
 
-use retune_model::{Damper, Measure, NonNegative, Parameter, Positive, den_hartog};
+use retune_model::{Damper, Measure, NonNegative, Parameter, Positive};
 use retune_optim::{DesignObjective, Goal, Limit, Response};
 use retune_study::{Search, Study};
 
-/// Points along k2 and along c2 from which the best is taken, from and to these multiples of Den Hartog's.
-const POINTS: usize = 16;
-const RANGE: [[f64; 2]; 2] = [[0.03, 30.0], [0.03, 300.0]];
+/// The springs and dashpots from which the best is taken, in those of Den Hartog's.
+const TUNINGS: [[f64; 2]; 2] = [[0.03, 30.0], [0.03, 300.0]];
 /// Gaps without a bound are so many times the stroke.
 const OPEN: f64 = 4.0;
 /// Share of a gap that a stroke may have.
@@ -25,21 +24,8 @@ pub(super) fn tmd(study: &Study, search: &Search) -> Option<Vec<f64>> {
         .collect();
     let of = steady(study, search, &springs, room)?;
     let bounds: Vec<_> = springs.iter().map(|&i| search.options.bounds[i]).collect();
-    let scales = den_hartog(&study.scene.primary, search.damper.mass.get());
-    let at = |number: usize| -> Vec<f64> {
-        let value = |axis: usize| {
-            let which = usize::from(of.variables()[axis] == Parameter::C2);
-            let [from, to] = RANGE[which];
-            let step = number / POINTS.pow(axis as u32) % POINTS;
-            let share = step as f64 / (POINTS - 1) as f64;
-            let value = scales[which] * from * (to / from).powf(share);
-            value.max(bounds[axis].lower.unwrap_or(0.0)).min(bounds[axis].upper.unwrap_or(f64::INFINITY))
-        };
-        (0..springs.len()).map(value).collect()
-    };
-    let all = (0..POINTS.pow(springs.len() as u32)).map(at);
-    let best = all.map(|x| (of.value(&x, f64::INFINITY), x)).min_by(|a, b| a.0.total_cmp(&b.0))?.1;
-    let best = of.descend(&bounds, &best).end.x;
+    let (_, valley) = of.valleys(TUNINGS, &bounds).into_iter().next()?;
+    let best = of.descend(&bounds, &valley).end.x;
     let stroke =
         of.evaluate(&of.scene(&best).ok()?, f64::INFINITY).ok()?.reached.get(Limit::Of(Measure::Stroke));
     let mut tmd: Vec<f64> = search.variables.iter().map(|variable| variable.get(&search.damper)).collect();

@@ -86,6 +86,25 @@ fn reference_the_tmd_of_a_design_is_the_optimum_of_the_closed_form() {
     }
 }
 
+/// A structure that is driven off its resonance has its best TMD where it is driven: numbers of a search by NumPy over spring and dashpot.
+#[test]
+fn reference_the_tmd_of_a_structure_driven_off_its_resonance() {
+    let machine = json!({ "m1": "1200kg", "f1": "14Hz", "zeta": "1%", "mass": "120kg" });
+    for (force, goal, most) in [
+        (json!({ "imbalance": "0.02kg·m", "band": "30Hz..60Hz" }), "E1max", 0.010_412),
+        (json!({ "imbalance": "0.02kg·m", "band": "30Hz..60Hz" }), "v1max", 0.004_15),
+        (json!({ "force": "180N", "band": "1Hz..3Hz", "mass": "40kg" }), "ground_force", 187.68),
+    ] {
+        let mut all = machine.clone();
+        all.as_object_mut().expect("an object").extend(force.as_object().cloned().expect("an object"));
+        all["goal"] = json!(goal);
+        let found = with_tmd(all);
+        assert_eq!(found["build"], "TMD", "{found}");
+        assert!(largest(&found, 1, goal) <= most, "{goal}: {found}");
+        assert_eq!(found["candidates"][0]["keeps_limits"], true);
+    }
+}
+
 /// On an undamped structure no damper is below the fixed points, and the exact optimum is above them by less than one per cent: √(1 + 2/μ) static
 /// deflections under a force (Den Hartog), and as many accelerations of the base in that of the structure, √(2 / (μ (1 + μ))) times m e / m1 under an imbalance (Warburton). The formula's own damper is no
 /// better; under a force and on a moving base Nishihara and Asami's is as good.
@@ -253,6 +272,14 @@ fn contract_slips_are_refused_with_what_to_give() {
         (json!({ "k1_error": 10 }), "--k1-error: 10 is 1000 %: write 10% if that is what is meant"),
         (json!({ "goal": "stroke" }), "--goal: \"stroke\" is none: give one of E1max, x1max"),
         (json!({ "limits": { "x2max": 1 } }), "--limit: there is no quantity \"x2max\": give one of E1max"),
+        (
+            json!({ "limits": { "stroke": "15 mm" }, "stroke": "20 mm" }),
+            "--limit stroke: is limited twice, to 15 mm and to 20 mm: give one limit of it",
+        ),
+        (
+            json!({ "limits": { "ground-force": "1 kN", "ground_force": "2 kN" } }),
+            "--limit ground-force: is limited twice",
+        ),
         (json!({ "limits": { "stroke": "15 N" } }), "--limit stroke: \"15 N\" is not a number in m"),
         (json!({ "damper": "nes" }), "--damper: \"nes\" is none: give tmd, ssvi or both"),
         (json!({ "wall": "R=20mm" }), "--wall: E is missing: for instance R=20mm,E=5MPa"),
@@ -319,6 +346,21 @@ fn regress_a_damper_that_does_nothing_is_not_recommended() {
     let answer = desk.read("out/answer.txt");
     assert!(answer.contains("Build no damper for this") && !answer.contains("Build the TMD"), "{answer}");
     assert!(desk.read("out/README.md").starts_with("# Build no damper for this"));
+    let found = desk.read_json("out/design.json");
+    assert_eq!([&found["build"], &found["in_vain"]], [&Value::Null, &json!(true)]);
+}
+
+/// Each of two limits is kept by a TMD of this mass, and both by none: neither is said to be one that none keeps.
+#[test]
+fn contract_limits_that_none_keeps_together_are_said_to_be() {
+    let tight = json!({
+        "m1": "1200kg", "f1": "14Hz", "zeta": "1%", "imbalance": "0.02kg·m", "band": "12Hz..16Hz", "mass": "40kg",
+        "damper": "tmd", "limits": { "stroke": "0.2 mm", "ground-force": "3 kN" }
+    });
+    let desk = Desk::new();
+    make(&desk, &good(asked(tight).requirements()), &Silent);
+    let answer = retune_testkit::desk::flat(&desk.read("out/answer.txt"));
+    assert!(answer.contains("no TMD of this mass was found to keep with the others: without it"), "{answer}");
 }
 
 /// What no TMD of this mass keeps is told, with a mass that does.

@@ -148,6 +148,22 @@ fn contract_a_damper_with_walls_is_told_with_its_worst_k1() {
     assert!(desk.read("out/answer.txt").contains("for every k1"), "{found}");
 }
 
+/// Where the worst k1 is the end of its range, the row of that end is the worst.
+#[test]
+fn regress_the_row_of_the_worst_k1_is_the_worst() {
+    let floor = json!({
+        "m1": "5t", "f1": "2Hz", "zeta": "0.8%", "force": "180N", "band": "1.7Hz..2.3Hz", "mass": "2%", "goal": "a1max",
+        "k1_error": "5%"
+    });
+    let desk = Desk::new();
+    make(&desk, &good(asked(floor).requirements()), &Silent);
+    let found = desk.read_json("out/design.json");
+    let (own, off) = (&found["candidates"][2]["steady"]["a1max"], &found["k1_off"][2]);
+    let k1 = 5000.0 * (std::f64::consts::TAU * 2.0).powi(2);
+    assert!((own["k1"].as_f64().expect("a number") / (0.95 * k1) - 1.0).abs() < 1e-9, "{own}");
+    assert_eq!(own["value"], off[1], "{found}");
+}
+
 /// Where every known design breaks the limits by far no descent begins, which would take minutes: the answer says what comes nearest.
 #[test]
 fn contract_limits_far_below_what_dampers_reach_are_answered_at_once() {

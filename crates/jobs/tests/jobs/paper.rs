@@ -132,6 +132,11 @@ fn contract_one_figure_or_table_makes_its_own_files_only() {
         }
         other => panic!("{other}"),
     }
+    for unknown in ["figure99", "Figure3", "table 1", ""] {
+        let error = refused(reproduce(&request(&desk, "none"), Some(unknown), &Silent)).to_string();
+        assert!(error.starts_with(&format!("only: \"{unknown}\" is no table or figure")), "{error}");
+        assert!(error.contains("figure6, figure7"), "{error}");
+    }
     assert_eq!(desk.read("out/figure6-old.csv"), "of an earlier run");
     let record = Record::default();
     good(reproduce(&Request { replace: true, ..request(&desk, "out") }, Some("figure6"), &record));

@@ -95,6 +95,11 @@ fn exact_a_mode_is_the_building_but_for_the_other_modes() {
     }
     let left_out = left_out(&all, 0);
     assert!((0.01..0.05).contains(&left_out), "{left_out}");
+    // At its own frequency one without damping goes beyond all bounds, and others add nothing to that.
+    let mut undamped = modes();
+    undamped[1].zeta = NonNegative::default();
+    assert_eq!(most_felt(&undamped), Some(1));
+    assert_eq!(retune_model::left_out(&undamped, 1), 0.0);
     let primary = first.primary().expect("a structure");
     let (m2, omega2) = (0.01 * M, first.omega.get());
     let damper = [m2, m2 * omega2 * omega2, 2.0 * ZETA * m2 * omega2];

@@ -80,7 +80,7 @@ impl DesignObjective {
     fn locked(&self, i: usize) -> f64 {
         let [k2, c2] = self.den_hartog();
         let locked = match self.variables()[i] {
-            Parameter::K2 => LOCKED[0] * k2,
+            Parameter::K2 => LOCKED[0] * k2 * self.driven()[1].powi(2).max(1.0),
             Parameter::C2 => LOCKED[1] * c2,
             _ => f64::INFINITY,
         };

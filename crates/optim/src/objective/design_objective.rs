@@ -48,7 +48,7 @@ impl Counts {
 /// A design that cannot be evaluated has the value +∞ and is recorded in [`Self::failures`].
 #[derive(Debug)]
 pub struct DesignObjective {
-    scene: Scene,
+    pub(super) scene: Scene,
     damper: Damper,
     variables: Vec<Parameter>,
     goal: Goal,

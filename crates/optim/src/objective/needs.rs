@@ -44,6 +44,8 @@ const MOST: f64 = 1601.0;
 /// How often the search of the best linear damper is begun again at its end, where it gains this share each time.
 const RESTARTS: u32 = 4;
 const GAIN: f64 = 1e-4;
+/// Springs and dashpots of the grid whose deepest valley it begins in, too, in those of Den Hartog's.
+const TUNINGS: [[f64; 2]; 2] = [[0.05, 5.0], [0.05, 300.0]];
 /// The share of its critical damping below which a damper is told to have none.
 const UNDAMPED: f64 = 1e-9;
 
@@ -154,8 +156,9 @@ impl Goal {
     /// The damper of the same mass without walls that this goal is smallest for, regardless of limits and bounds; none where the goal says
     /// nothing of the structure, or there is no such damper to start from.
     ///
-    /// A search by the closed form of the steady motion, over the band if there is one, begins at Den Hartog's tuning; one by the goal itself follows,
-    /// unless that has an ensemble. One that has stopped in a kink is begun again there.
+    /// A search by the closed form of the steady motion, over the band if there is one, begins at Den Hartog's tuning and in the deepest
+    /// [valley](DesignObjective::valleys) of a grid; one by the goal itself follows, unless that has an ensemble. One that has stopped in a kink is begun
+    /// again there.
     pub fn best_linear(&self, scene: &Scene, settings: &Settings) -> Option<Scene> {
         let damper = scene.damper?;
         let quantity = self.objective.quantity();
@@ -169,18 +172,21 @@ impl Goal {
             clearance: NonNegative::default(),
             ..damper
         };
-        let search = |start: [f64; 2], change: &dyn Fn(&mut Objective)| {
+        let not_negative = [Bounds { lower: Some(0.0), upper: None }; 2];
+        let objective = |change: &dyn Fn(&mut Objective)| {
             let mut goal = Self { limits: Limits::default(), ..self.clone() };
             goal.objective.for_each_term(&mut |term| change(term));
             let variables = vec![Parameter::K2, Parameter::C2];
-            let objective = DesignObjective::new(*scene, plain, variables, goal, *settings);
+            DesignObjective::new(*scene, plain, variables, goal, *settings)
+        };
+        let search = |start: [f64; 2], objective: &DesignObjective| {
             let options = Options {
                 scaling: Scaling::Start,
                 tol_x: 1e-6,
                 tol_fun: 1e-9 * objective.value(&start, f64::INFINITY),
                 max_iter: Some(400),
                 max_fun_evals: Some(400),
-                bounds: vec![Bounds { lower: Some(0.0), upper: None }; 2],
+                bounds: not_negative.to_vec(),
             };
             let value = |x: &[f64], cutoff: f64| objective.value(x, cutoff);
             let from =
@@ -195,24 +201,27 @@ impl Goal {
                 }
                 found = again;
             }
-            <[f64; 2]>::try_from(found.x).ok()
+            Some((<[f64; 2]>::try_from(found.x).ok()?, found.value))
         };
         let banded = self.objective.terms().iter().all(|(_, term)| term.omega.is_some());
         let mut best = den_hartog(&scene.primary, damper.mass.get());
         if banded || self.objective.is_steady() {
-            let steady = |term: &mut Objective| (term.response, term.ensemble) = (Response::Steady, None);
-            best = search(best, &steady)?;
+            let steady = objective(&|term| (term.response, term.ensemble) = (Response::Steady, None));
+            let (found, value) = search(best, &steady)?;
+            let valley = steady.valleys(TUNINGS, &not_negative).into_iter().next();
+            let other = valley.and_then(|(_, x)| search(<[f64; 2]>::try_from(x).ok()?, &steady));
+            best = other.filter(|other| other.1 < (1.0 - GAIN) * value).map_or(found, |(other, _)| other);
         }
         if !self.objective.is_steady()
             && self.objective.terms().iter().all(|(_, term)| term.ensemble.is_none())
         {
             // A linear damper has one motion.
-            let own = |term: &mut Objective| {
+            let own = objective(&|term| {
                 if term.response == Response::Motions {
                     term.response = Response::Settled;
                 }
-            };
-            best = search(best, &own)?;
+            });
+            best = search(best, &own)?.0;
         }
         let critical = 2.0 * (best[0] * damper.mass.get()).sqrt();
         if best[1] < UNDAMPED * critical {

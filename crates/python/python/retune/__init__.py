@@ -8,7 +8,7 @@ are in SI units (kg, N/m, N s/m, N, m, s, rad/s), or texts with a unit ("20 kN/m
 >>> problem = rt.Problem(rt.Structure(m1=1000, c1=452, k1=3.95e4), rt.TMD(60, k2=1900, c2=150), P=800, band=(5, 8),
 ...                      vary=["k2", "c2"], bounds={"k2": (10, 4000), "c2": (0, 1000)}, response="steady")
 >>> round(problem([1900.0, 150.0]))
-215
+222
 """
 
 from retune._compare import Comparison, compare

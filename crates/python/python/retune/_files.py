@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import os
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -61,7 +62,9 @@ class Design:
 
     def _repr_html_(self) -> str:
         head = list(self.rows[0])
-        return _show.page(head, [[row[name] for name in head] for row in self.rows], self.answer.splitlines()[0])
+        # Lines that go on are indented.
+        first = " ".join(re.split(r"\n(?! )", self.answer)[0].split())
+        return _show.page(head, [[row[name] for name in head] for row in self.rows], first)
 
 
 def design(

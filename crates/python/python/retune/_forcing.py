@@ -22,7 +22,7 @@ class Record:
     first and after the last sample there is nothing.
 
     >>> import numpy as np, retune as rt
-    >>> t = np.arange(0, 20, 0.01)
+    >>> t = np.linspace(0, 30, 3001)
     >>> record = rt.Record(t, 0.1 * np.exp(-0.2 * t) * np.sin(6 * t), of="base acceleration", unit="g")
     >>> problem = rt.Problem(rt.Structure(m1=1000, c1=452, k1=3.95e4), rt.TMD(60, k2=1900, c2=150), record=record, window=(0, 30))
     >>> round(problem.simulate().maxima["x1max"], 4)

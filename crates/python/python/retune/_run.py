@@ -33,9 +33,10 @@ class Run:
     v2: NDArray[np.float64]
     #: The rows at equal intervals: t, x1, v1, x2, v2, the energies E1 and E2 (J), the contact forces FconL and FconR (N).
     motion: Table
-    #: The same columns at the events between them, and ``moment``: touch-down, force-max, lift-off, E1-max.
+    #: The same columns at the events between them, ``moment``: touch-down, force-max, lift-off, E1-max, and the ``wall`` of the contact.
     events: Table
-    #: A row for each contact: touch-down and lift-off (s; NaN beyond the window), largest force (N), wall ("structure" or "obstacle").
+    #: A row for each contact: touch-down and lift-off (s; NaN beyond the window), largest force (N; NaN if it is beyond the window, infinite of an
+    #: impact on a rigid wall), wall ("structure" or "obstacle").
     contacts: Table
     #: The largest values and everything else that the run is known by, as `retune simulate --json` has it.
     maxima: dict[str, Any]
@@ -43,7 +44,7 @@ class Run:
     def __init__(self, motion: Table, events: Table, maxima: dict[str, Any]) -> None:
         self.motion, self.events, self.maxima = motion, events, maxima
         self.t, self.x1, self.v1, self.x2, self.v2 = (motion[name] for name in ("t", "x1", "v1", "x2", "v2"))
-        self.contacts = _contacts(events)
+        self.contacts = _contacts(events, maxima["force_max"])
 
     def to_pandas(self) -> pd.DataFrame:
         """The motion as a pandas DataFrame."""
@@ -79,22 +80,23 @@ class Run:
 
 def simulate(problem: _core.Core, x: ArrayLike | None, interval: float, changes: Mapping[str, float | str]) -> Run:
     motion, events, moments, maxima = _core.run(problem, x, scalar(interval, "interval"), [(key, scalar(value, key)) for key, value in changes.items()])
-    events["moment"] = np.array(moments, dtype=object)
+    events["moment"], events["wall"] = (np.array(column, dtype=object) for column in zip(*moments)) if moments else (np.array([], dtype=object),) * 2
     return Run(Table(motion, UNITS), Table(events, UNITS), json.loads(maxima))
 
 
-def _contacts(events: Table) -> Table:
-    """The contacts, from their events in the order of time."""
+def _contacts(events: Table, largest: Mapping[str, float | None]) -> Table:
+    """The contacts, from their events in the order of time; ``largest`` has the largest force on each wall, None of one that has no bound."""
     rows: list[list[Any]] = []
     is_open = False
-    for t, left, right, moment in zip(events["t"], events["FconL"], events["FconR"], events["moment"]):
+    for t, left, right, moment, wall in zip(*(events[name] for name in ("t", "FconL", "FconR", "moment", "wall"))):
         if moment == "E1-max":
             continue
         if moment == "touch-down" or not is_open:
-            rows.append([t if moment == "touch-down" else np.nan, np.nan, 0.0, ""])
+            force = np.inf if largest["primary" if wall == "structure" else wall] is None else np.nan
+            rows.append([t if moment == "touch-down" else np.nan, np.nan, force, wall])
             is_open = True
-        if moment == "force-max" and max(left, right) > rows[-1][2]:
-            rows[-1][2:] = [max(left, right), "structure" if left > right else "obstacle"]
+        if moment == "force-max":
+            rows[-1][2] = np.fmax(rows[-1][2], max(left, right))
         if moment == "lift-off":
             rows[-1][1], is_open = t, False
     names, kinds = ("touch_down", "lift_off", "force", "wall"), (float, float, float, object)

@@ -26,10 +26,12 @@ class Part:
             if isinstance(value, str):
                 object.__setattr__(self, name, scalar(value, name))
 
+    def _known(self) -> dict[str, Any]:
+        """What is shown, by its symbol."""
+        return vars(self)
+
     def _rows(self) -> list[list[object]]:
-        # `rigid` of a contact is a restitution.
-        known = ((value, "restitution" if name == "rigid" else name) for name, value in vars(self).items())
-        return [[name, value, *MEANING[name]] for value, name in known if isinstance(value, (int, float))]
+        return [[name, value, *MEANING[name]] for name, value in self._known().items() if isinstance(value, (int, float))]
 
     def __repr__(self) -> str:
         return f"{self.title}\n{_show.text(['', 'value', 'unit', ''], self._rows())}"
@@ -92,6 +94,9 @@ class Contact(Part):
             given = {of.name: getattr(self, of.name) for of in fields(self) if getattr(self, of.name) != of.default}
             return {**given, "rigid": {"restitution": self.rigid}}
         return {name: value for name, value in vars(self).items() if value is not None}
+
+    def _known(self) -> dict[str, Any]:
+        return vars(self) if self.rigid is None else {"restitution": self.rigid}
 
 
 @dataclass(frozen=True, repr=False)

@@ -85,6 +85,8 @@ fn contract_a_mode_of_a_table_is_the_structure() {
         ("f,zeta,M\n1,0.01,5\n", "modes.csv: has no column phi"),
         ("f,zeta,M,phi\n", "modes.csv: has no mode"),
         ("f,zeta,M,phi\n1,0.01,5,x\n", "modes.csv: line 2: phi: \"x\" is not a number"),
+        ("f,zeta,M,phi\n-14,0.01,5,1\n", "modes.csv: line 2: f: -14 is not allowed here"),
+        ("f,zeta,M,phi,M\n14,0.01,5,1,6\n", "modes.csv: has the column M twice: give it once"),
         ("f,zeta,M,phi\n1,0.01,-5,1\n", "modes.csv: line 2: M: -5 is not allowed here"),
         ("f,zeta,M,phi\n1,0.01,5,0\n", "modes.csv: mode 1: phi = 0: it does not move the damper"),
     ] {

@@ -2,7 +2,7 @@
 
 use crate::amount::{Amount, measured};
 use retune_dynamics::periodic::{Largest, Share};
-use retune_model::Measure;
+use retune_model::{Measure, Parameter};
 use retune_study::{counted, rounded, short};
 use serde::Serialize;
 
@@ -194,6 +194,9 @@ pub struct Margin {
     pub other: Option<Other>,
     /// The least relative error of a parameter of a robust design, %.
     pub needed_percent: f64,
+    /// What the forces are multiples of; none of what is given in time.
+    #[serde(skip)]
+    pub amplitude: Option<Parameter>,
     /// The parameters whose errors of that size bring such a motion, of those that were found at more force.
     pub parameters: Vec<ParameterError>,
 }
@@ -214,11 +217,16 @@ impl Margin {
     }
 
     pub fn words(&self) -> String {
-        let safe = percent_down(self.safe_to);
-        let Some(other) = &self.other else {
-            return format!("safe to {safe} P, where none with 5 % more is found");
+        let safe = match self.amplitude.filter(|amplitude| *amplitude != Parameter::P) {
+            None => format!("{} P", percent_down(self.safe_to)),
+            Some(other) => {
+                format!("{} times the {}", percent_down(self.safe_to), other.symbol().replace('_', " "))
+            }
         };
-        let mut words = format!("safe to {safe} P; from there on a motion has {}", other.words());
+        let Some(other) = &self.other else {
+            return format!("safe to {safe}, where none with 5 % more is found");
+        };
+        let mut words = format!("safe to {safe}; from there on a motion has {}", other.words());
         for ParameterError { parameter, percent, other } in &self.parameters {
             words += &format!("; {parameter} off by {} % brings {}", rounded(*percent, 2), other.words());
         }
