@@ -82,7 +82,7 @@ pub fn retention(
         let (mut dampers, mut designs) = (Vec::new(), Vec::new());
         for row in &rows {
             let (tuned, rows) = anew::tune(row, &said, &others, &mut searches)?;
-            designs.extend(paper(&tuned));
+            designs.extend(given(&tuned));
             designs.extend(rows.into_iter().map(|row| on_common_samples(&tuned, row, &k1)));
             dampers.push(tuned.judged()?);
         }
@@ -112,18 +112,20 @@ fn on_common_samples(tuned: &Tuned, row: Row, k1: &[f64]) -> Row {
     Row { e1_max, ..row }
 }
 
-/// The row of the paper's design at the stiffness of its study. It has no certificate here.
-fn paper(tuned: &Tuned) -> Option<Row> {
-    let (at, damper) = (tuned.of(Tuning::Paper)?, tuned.study().scene.damper?);
+/// The row of the design that is given at the stiffness of its study. It has no certificate here.
+fn given(tuned: &Tuned) -> Option<Row> {
+    let (tuning, at) = *tuned.kept.iter().find(|(tuning, _)| Tuning::GIVEN.contains(tuning))?;
+    let damper = tuned.study().scene.damper?;
+    let whose = if tuning == Tuning::Paper { "the paper's design" } else { "the design of the study" };
     Some(Row {
-        label: Tuning::Paper.name().to_owned(),
+        label: tuning.name().to_owned(),
         damper: tuned.name.clone(),
         found: TunedDamper::of(&at.on(damper), tuned.study().varied()),
         printed: None,
         e1_max: tuned.energy(&at, tuned.nominal()),
         none: tuned.study().energy_without_damper(),
         verdict: "",
-        reason: "the paper's design is not certified here".to_owned(),
+        reason: format!("{whose} is not certified here"),
         needs: Largest::of(tuned.study(), &tuned.study().scene_at(&at)?),
     })
 }

@@ -22,7 +22,7 @@ pub static KIND: Kind = Kind {
     derived: &["table2.txt"],
 };
 
-/// Re-optimises each row of Table 2 from the paper's own design, under the objective and the bounds of its study. The table has the paper's
+/// Re-optimises each row of Table 2 from its reference design, the paper's own, under the objective and the bounds of its study. The table has the paper's
 /// row, with the E1max that it prints, and ours.
 ///
 /// # Errors
@@ -31,7 +31,7 @@ pub fn table2(request: &Request, watch: &dyn Observer) -> Result<Done<Designs>, 
     let mut rows = read_table2(&request.study)?;
     for PaperStudy { study, .. } in &mut rows {
         if let Some(optimize) = &mut study.optimize {
-            optimize.surf = None; // the refinement then starts at the damper of the scene, the paper's
+            optimize.surf = None; // the refinement then starts at the damper of the scene, the reference
         }
     }
     let studies = rows.iter().map(|row| (row.damper.as_str(), &row.study));
@@ -43,7 +43,7 @@ pub fn table2(request: &Request, watch: &dyn Observer) -> Result<Done<Designs>, 
             let (label, start) = if *of_paper {
                 ("paper", "the paper's design")
             } else {
-                ("study", "the damper of its study")
+                ("of the study", "the design that is given")
             };
             watch.log(&format!("\n{damper}: re-optimised from {start}"))?;
             let optimum = searches.tune(study, "")?;

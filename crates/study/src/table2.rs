@@ -58,28 +58,28 @@ pub struct PaperRow {
     pub damper: String,
     /// The study that tunes it; a path relative to this file.
     pub study: PathBuf,
-    /// The paper's design, from which the refinement starts. Default: the damper of the study.
+    /// A known design, as that of the paper, from which the refinement starts. Default: the damper of the study.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub paper: Option<Design>,
+    pub reference: Option<Design>,
     /// The E1max that the paper prints for it, J, if it does.
     #[serde(rename = "E1max", default, skip_serializing_if = "Option::is_none")]
     pub e1_max: Option<Positive>,
 }
 
-/// A damper's study with the paper's design in its scene.
+/// A damper's study with the reference design in its scene.
 #[derive(Clone, Debug)]
 pub struct PaperStudy {
     /// The damper's name in the table.
     pub damper: String,
-    /// The study; the design in its scene is the paper's, if the table has one.
+    /// The study; the design in its scene is the reference of the table, if it has one.
     pub study: Study,
-    /// Whether the table has a design of the paper.
+    /// Whether that is a damper of the paper.
     pub of_paper: bool,
     /// The E1max that the paper prints, J.
     pub printed: Option<Positive>,
 }
 
-/// Reads the studies of a table, each with the paper's design in its scene.
+/// Reads the studies of a table, each with its reference design in its scene.
 ///
 /// # Errors
 /// [`StudyError`], of the table's own file or of a study that it names.
@@ -87,7 +87,7 @@ pub fn read_table2(path: &Path) -> Result<Vec<PaperStudy>, StudyError> {
     read_rows(path).map(|(_, rows)| rows)
 }
 
-/// Reads a table with its studies, each with the paper's design in its scene.
+/// Reads a table with its studies, each with its reference design in its scene.
 pub fn read_rows(path: &Path) -> Result<(Table2, Vec<PaperStudy>), StudyError> {
     let file = path.display().to_string();
     let text = read_plan_text(path)?;
@@ -101,12 +101,12 @@ pub fn read_rows(path: &Path) -> Result<(Table2, Vec<PaperStudy>), StudyError> {
     }
     for row in &table.rows {
         let study_file = directory.join(&row.study);
-        let of_paper = row.paper.is_some();
-        let study = at_design(named(&study_file)?, row.paper)
+        let study = at_design(named(&study_file)?, row.reference)
             .map_err(|rule| StudyError::Rule { file: study_file.display().to_string(), rule })?;
         if rows.iter().any(|other| other.study.name() == study.name()) {
             return Err(refuse(Rule::SameName { name: study.name().to_owned() }));
         }
+        let of_paper = study.scene.damper.as_ref().is_some_and(is_of_paper);
         rows.push(PaperStudy { damper: row.damper.clone(), study, of_paper, printed: row.e1_max });
     }
     if rows.is_empty() { Err(refuse(Rule::NoRows)) } else { Ok((table, rows)) }
@@ -130,7 +130,7 @@ fn built_in_rows() -> Vec<(Option<Design>, Scene)> {
     let text_of = |name: &Path| text(&Path::new(PLACE).join(name));
     let table = text_of(Path::new("table2.json")).and_then(|text| parse::<Table2>(text, "table2.json").ok());
     let rows = table.into_iter().flat_map(|table| table.rows);
-    rows.filter_map(|row| Some((row.paper, from_text(text_of(&row.study)?, "built in").ok()?.scene)))
+    rows.filter_map(|row| Some((row.reference, from_text(text_of(&row.study)?, "built in").ok()?.scene)))
         .collect()
 }
 

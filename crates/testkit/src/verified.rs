@@ -51,7 +51,7 @@ pub fn desk() -> Desk {
     let desk = Desk::with(&study);
     let damper = json!({ "damper": "NES, \"single-sided\"", "study": "study.json" });
     let mut row = damper.clone();
-    row["paper"] = json!({ "k2": 215, "c2": 232, "D": 0.06, "C": 0.36 });
+    row["reference"] = json!({ "k2": 215, "c2": 232, "D": 0.06, "C": 0.36 });
     desk.write_json("table2.json", &json!({ "rows": [row] }));
     let fronts = json!({ "dampers": [damper], "k2": [300], "stroke": [0.9], "samples": 5 });
     desk.write_json("fronts.json", &fronts);

@@ -8,7 +8,7 @@ use crate::pages::over as over_band;
 use crate::searches::Searches;
 use crate::tune::Optimum;
 use retune_model::{Design, Parameter};
-use retune_study::{PaperStudy, Setting, SpringBounds, Study, Table2, short};
+use retune_study::{PaperStudy, Setting, SpringBounds, Study, Table2, is_of_paper, short};
 
 /// Tunes one damper for the stiffness of its study, then for each of `others`, upwards from there, then downwards, and last for the worst
 /// over all of them. The rows say what each search found.
@@ -46,8 +46,10 @@ pub(super) fn tune(
     let (designs, mut rows): (Vec<_>, Vec<_>) =
         found.into_iter().map(|(k1, design, row)| ((k1, design), row)).unzip();
     let mut tuned = Tuned::new(name.clone(), study.clone(), said.samples);
-    let paper = study.scene.damper.map(|damper| Design::of_varied(&damper, study.varied()));
-    tuned.kept.extend(paper.map(|at| (Tuning::Paper, at)));
+    tuned.kept.extend(study.scene.damper.map(|damper| {
+        let tuning = if is_of_paper(&damper) { Tuning::Paper } else { Tuning::Study };
+        (tuning, Design::of_varied(&damper, study.varied()))
+    }));
     tuned.kept.push((Tuning::Nominal, first));
     if designs.len() > 1 {
         let (study, name) = (robust(study, &designs)?, Tuning::Robust.name());

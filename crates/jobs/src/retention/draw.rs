@@ -27,7 +27,7 @@ const MORE: f64 = 1e-3;
 /// The line of a design that is kept.
 const fn line(tuning: Tuning) -> Stroke {
     match tuning {
-        Tuning::Paper => Stroke::new(PURPLE, 1.1, Dash::DashDot),
+        Tuning::Paper | Tuning::Study => Stroke::new(PURPLE, 1.1, Dash::DashDot),
         Tuning::Nominal => Stroke::new(VERMILION, 1.1, Dash::Long),
         _ => Stroke::solid(GREEN),
     }
@@ -159,7 +159,7 @@ pub(super) fn range(retained: &Retained) -> Drawing {
         layers.push(Layer::Marks { points, mark: small });
         legend.push((Key::Marked(stroke, small), retained.name(*damper).to_owned()));
     }
-    let shapes = [Shape::Cross, Shape::Triangle, Shape::Frame];
+    let shapes = [Shape::Cross, Shape::Cross, Shape::Triangle, Shape::Frame];
     for (tuning, shape) in Tuning::KEPT.into_iter().zip(shapes) {
         let mark = |colour| Mark { rim: true, ..Mark::new(shape, colour, 7.0) };
         let own = || kept.iter().filter(|point| point.tuning == tuning && point.range().is_some());

@@ -53,7 +53,9 @@ impl Retained {
     pub(super) fn same(&self) -> Vec<(usize, usize)> {
         let energies = |damper: usize| -> Vec<f64> {
             let rows = self.table.rows.iter().filter(|row| row.damper == self.name(damper));
-            rows.filter(|row| row.label != Tuning::Paper.name()).map(|row| row.e1_max).collect()
+            rows.filter(|row| Tuning::GIVEN.iter().all(|given| row.label != given.name()))
+                .map(|row| row.e1_max)
+                .collect()
         };
         let equal = |one: usize, other: usize| {
             let (one, other) = (energies(one), energies(other));
@@ -70,10 +72,11 @@ impl Retained {
         (0..self.dampers.len()).filter(|damper| same.iter().all(|(one, _)| one != damper)).collect()
     }
 
-    /// Whether a kept design of a shown damper is shown: one of the paper may stand in several studies, and is shown with the first.
+    /// Whether a kept design of a shown damper is shown: one that is given may stand in several studies, and is shown with the first.
     pub(super) fn is_new(&self, damper: usize, tuning: Tuning) -> bool {
         let at = self.dampers[damper].of(tuning);
-        tuning != Tuning::Paper || self.dampers[..damper].iter().all(|earlier| earlier.of(tuning) != at)
+        !Tuning::GIVEN.contains(&tuning)
+            || self.dampers[..damper].iter().all(|earlier| earlier.of(tuning) != at)
     }
 
     pub(super) fn shown_kept(&self) -> Vec<&Point> {

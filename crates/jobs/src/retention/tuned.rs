@@ -19,6 +19,8 @@ pub enum Tuning {
     None,
     /// That of the paper, kept whatever k1 becomes.
     Paper,
+    /// Another that is given, kept as well.
+    Study,
     /// Tuned for the k1 of its study, and kept.
     Nominal,
     /// Tuned for the worst over all k1, and kept.
@@ -31,13 +33,16 @@ pub enum Tuning {
 
 impl Tuning {
     /// Those whose design is kept.
-    pub const KEPT: [Self; 3] = [Self::Paper, Self::Nominal, Self::Robust];
+    pub const KEPT: [Self; 4] = [Self::Paper, Self::Study, Self::Nominal, Self::Robust];
+    /// Those that no search found.
+    pub const GIVEN: [Self; 2] = [Self::Paper, Self::Study];
 
     /// Its name in tables and figures.
     pub const fn name(self) -> &'static str {
         match self {
             Self::None => "none",
             Self::Paper => "paper",
+            Self::Study => "of the study",
             Self::Nominal => "nominal",
             Self::Robust => "k1-robust",
             Self::Anew => "re-tuned",
@@ -57,7 +62,7 @@ pub(super) const STILL: usize = 1;
 pub struct Tuned {
     /// Its name.
     pub name: String,
-    /// Its study, the damper in whose scene is the paper's; then the same with a band that stays, if that of the study moves with k1.
+    /// Its study, the damper in whose scene is the one that is given; then the same with a band that stays, if that of the study moves with k1.
     pub studies: Vec<Study>,
     /// For each of them what counts as half of the work.
     pub thresholds: Vec<Threshold>,

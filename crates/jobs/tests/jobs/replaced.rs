@@ -44,7 +44,7 @@ fn contract_results_of_another_study_are_not_replaced_unasked() {
     desk.write_json("studies/small.json", &tiny());
     desk.write_json("other/small.json", &edited(3e4));
     desk.write_json("table2.json", &json!({ "rows": [
-        { "damper": "a", "study": "other/small.json", "paper": { "k2": 215, "c2": 232, "D": 0.06, "C": 0.36 } }
+        { "damper": "a", "study": "other/small.json", "reference": { "k2": 215, "c2": 232, "D": 0.06, "C": 0.36 } }
     ]}));
     search(&desk, "studies/small.json", RESULTS);
     desk.write("results/small/notes.txt", "mine");

@@ -47,7 +47,7 @@ fn moving() -> Desk {
     let mut study = global(json!({ "omega": omega }), json!({}));
     study["optimize"]["global"] = json!({ "samples": 8, "searches": 1, "evaluations": 20 });
     desk.write_json("one.json", &study);
-    let row = json!({ "damper": "SSVI NES", "study": "one.json", "paper": { "k2": 215, "c2": 232, "D": 0.06, "C": 0.36 } });
+    let row = json!({ "damper": "SSVI NES", "study": "one.json", "reference": { "k2": 215, "c2": 232, "D": 0.06, "C": 0.36 } });
     desk.write_json("retune.json", &json!({ "rows": [row], "samples": 5 }));
     desk
 }
@@ -116,7 +116,7 @@ fn contract_bounds_on_k2_follow_k1_unless_they_are_fixed() {
         damper.remove(wall);
     }
     let mut table = desk.read_json("retune.json");
-    table["rows"][0]["paper"] = json!({ "k2": 215, "c2": 232 });
+    table["rows"][0]["reference"] = json!({ "k2": 215, "c2": 232 });
     desk.write_json("retune.json", &table);
     study["optimize"]["bounds"]["k2"] = json!([10, 1000]);
     study["optimize"]["global"] = json!({ "samples": 8, "searches": 1, "evaluations": 20 });
@@ -149,7 +149,7 @@ fn invariant_ranges_end_where_half_of_the_work_ends() {
     let paper = json!({ "k2": 2000, "c2": 150, "D": 2.08, "C": 4.7 });
     desk.write_json(
         "tmds.json",
-        &json!({ "rows": [{ "damper": "TMD", "study": "tmd.json", "paper": paper }] }),
+        &json!({ "rows": [{ "damper": "TMD", "study": "tmd.json", "reference": paper }] }),
     );
     let done = good(retention(&request(&desk, "tmds.json", "out"), &stiffnesses(&[3e4]), &Silent));
     let Done::Made(retained) = done else { panic!("it was finished before") };
@@ -167,6 +167,9 @@ fn invariant_ranges_end_where_half_of_the_work_ends() {
     assert!(count > 10, "{count}");
     // A linear damper leaves the same share under any force; at home the widest range stands first.
     assert!(retained.forced.len() == 1 && retained.forced[0].is_constant(), "{:?}", retained.forced);
+    // The design that is given is not one of the paper.
+    assert!(desk.read("out/retune.csv").contains("of the study,TMD,"));
+    assert!(desk.read("out/retune.txt").contains("the design of the study is not certified here"));
     let page = desk.read("out/README.md");
     assert!(page.starts_with("# How long a tuning lasts\n\n- At equal performance at home"), "{page}");
     let front: Vec<&Point> = retained

@@ -156,7 +156,7 @@ fn contract_results_are_read_as_the_study_with_the_design_that_was_found() {
         assert_eq!(json!(run)["E1max"].as_f64(), Some(found.value()), "{path}");
     }
     // Of several searches one has to be named.
-    let row = json!({ "damper": "NES", "study": "study.json", "paper": { "k2": 215, "c2": 232, "D": 0.06, "C": 0.36 } });
+    let row = json!({ "damper": "NES", "study": "study.json", "reference": { "k2": 215, "c2": 232, "D": 0.06, "C": 0.36 } });
     desk.write_json("table2.json", &json!({ "rows": [row] }));
     good(table2(&request(&desk, "table2.json", "table"), &Silent));
     let said = refused(read_file(&desk.path("table"))).to_string();

@@ -183,7 +183,7 @@ fn contract_results_that_break_their_limits_are_verified() {
     assert!(value > 1e100, "{value}");
 
     let paper = json!({ "k2": 215, "c2": 232, "D": 0.06, "C": 0.36 });
-    let row = json!({ "damper": "NES", "study": "study.json", "paper": paper });
+    let row = json!({ "damper": "NES", "study": "study.json", "reference": paper });
     desk.write_json("table2.json", &json!({ "rows": [row] }));
     let done = good(table2(&request(&desk, "table2.json", "table"), &Silent));
     let Done::Made(table) = done else { panic!("it was finished before") };

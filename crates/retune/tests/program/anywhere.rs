@@ -37,9 +37,12 @@ fn contract_a_study_file_may_have_any_name() {
     assert!(said.contains("results in results/sweep-My-Study--2--P: "), "{said}");
     let said = desk.good(&["optimize", study, "--quiet"]);
     assert!(said.contains("results in results/My-Study--2-: "), "{said}");
+    let mut own = tiny();
+    own["scene"]["damper"]["k2"] = 216.into();
+    desk.write_json(study, &own);
     desk.write_json("My Table.json", &serde_json::json!({ "rows": [{ "damper": "NES", "study": study }] }));
     let said = desk.good(&["table2", "My Table.json", "--quiet"]);
-    assert!(said.contains("\nstudy         ") && said.contains("results in results/My-Table: "), "{said}");
+    assert!(said.contains("\nof the study  ") && said.contains("results in results/My-Table: "), "{said}");
 }
 
 /// The whole of standard output is one object.

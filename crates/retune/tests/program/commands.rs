@@ -44,7 +44,7 @@ fn contract_tables_and_fronts_show_what_they_found_and_where_it_is() {
     let desk = Desk::with(&study);
     let damper = json!({ "damper": "NES", "study": "study.json" });
     let mut row = damper.clone();
-    row["paper"] = json!({ "k2": 215, "c2": 232, "D": 0.06, "C": 0.36 });
+    row["reference"] = json!({ "k2": 215, "c2": 232, "D": 0.06, "C": 0.36 });
     desk.write_json("mine.json", &json!({ "rows": [row] }));
     desk.write_json(
         "fronts.json",

@@ -127,7 +127,7 @@ fn contract_limits_that_no_design_keeps_exit_with_3() {
         let again = desk.run(arguments);
         assert_eq!((again.code, &again.stderr), (Some(3), &stderr), "{arguments:?}");
     }
-    let row = json!({ "damper": "NES", "study": "none.json", "paper": { "k2": 215, "c2": 232, "D": 0.06, "C": 0.36 } });
+    let row = json!({ "damper": "NES", "study": "none.json", "reference": { "k2": 215, "c2": 232, "D": 0.06, "C": 0.36 } });
     desk.write_json("table2.json", &json!({ "rows": [row] }));
     let Answer { code, stderr, .. } = desk.run(&["table2", "table2.json", "--quiet"]);
     assert_eq!(code, Some(3));
