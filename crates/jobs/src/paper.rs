@@ -67,6 +67,9 @@ pub fn reproduce(request: &Request, only: Option<&str>, watch: &dyn Observer) ->
         return Err(Error::Requirement { place: "only".to_owned(), problem });
     }
     let plan = Plan::read(&request.study, watch)?;
+    if !study::is_papers_structure(&plan.ssvi.scene) {
+        watch.warn("the structure is not the paper's, of which the statements speak; some stiffnesses and frequencies are the paper's all the same");
+    }
     let dampers = [("SSVI NES", &plan.ssvi), ("TMD", &plan.tmd)];
     let mut job = Job::of_studies(&KIND, request, serde_json::json!(plan.file), dampers.into_iter())?;
     if let Some(only) = only {

@@ -160,12 +160,12 @@ fn in_bare(system: &Bare, window: Window, settings: &Settings, ask: Ask) -> Resu
     let largest = match observed(ask.measure) {
         Observed::Motion(quantity) => {
             let mut size = Magnitude::new(|sign| quantity(system, sign), ask.cutoff);
-            system.follow_for(plan, window, settings, &mut Unobserved, &mut size)?;
+            system.follow(plan, window, settings, &mut Unobserved, &mut size)?;
             size.record()
         }
         Observed::Energy => {
             let mut e1 = RunningMaximum::new(BareEnergy::new(system), ask.cutoff);
-            system.follow_for(plan, window, settings, &mut Unobserved, &mut e1)?;
+            system.follow(plan, window, settings, &mut Unobserved, &mut e1)?;
             e1.record()
         }
         // There is no damper that could move or touch.

@@ -119,6 +119,20 @@ fn contract_reproduce_makes_one_page_that_needs_nothing_else() {
 }
 
 #[test]
+fn contract_another_structure_than_the_papers_is_warned_of() {
+    let desk = small();
+    for row in desk.read_json("table2.json")["rows"].as_array().expect("rows") {
+        let file = row["study"].as_str().expect("a file");
+        let mut study = desk.read_json(file);
+        study["scene"]["primary"]["m1"] = json!(1200);
+        desk.write_json(file, &study);
+    }
+    let record = Record::default();
+    good(reproduce(&request(&desk, "out"), Some("figure6"), &record));
+    assert!(record.warnings().starts_with("the structure is not the paper's"), "{}", record.warnings());
+}
+
+#[test]
 fn contract_one_figure_or_table_makes_its_own_files_only() {
     let desk = small();
     desk.write("out/figure6-old.csv", "of an earlier run");
@@ -141,6 +155,7 @@ fn contract_one_figure_or_table_makes_its_own_files_only() {
     let record = Record::default();
     good(reproduce(&Request { replace: true, ..request(&desk, "out") }, Some("figure6"), &record));
     assert!(record.results().starts_with("Figure 6. "), "{}", record.results());
+    assert_eq!(record.warnings(), "");
     let names = [
         "figure5.svg",
         "figure6-statements.json",
