@@ -9,7 +9,7 @@ use retune_model::{
     Bare, Forcing, Loss, Measure, NonNegative, PerMeasure, PoissonRatio, Positive, Primary, Restitution,
     Scene, Surfaces, den_hartog,
 };
-use retune_optim::{Band, Limit, Limits, springs_for};
+use retune_optim::{Band, Limit, Limits, over_natural, springs_for};
 use retune_solver::{Also, Ask, Settings, Window, extremes};
 use retune_study::Study;
 use retune_study::read::from_text;
@@ -205,8 +205,7 @@ impl Requirements {
 
     /// The band of a harmonic in multiples of its natural frequency.
     fn driven(&self) -> [f64; 2] {
-        let natural = self.natural_frequency();
-        self.driving.band().map_or([1.0; 2], |band| band.map(|omega| omega / natural))
+        self.driving.band().map_or([1.0; 2], |band| over_natural(band, self.natural_frequency()))
     }
 
     /// What moves it; a harmonic at the frequency of the band that is nearest to its own.

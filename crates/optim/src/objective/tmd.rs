@@ -9,9 +9,17 @@ use retune_model::Parameter;
 const POINTS: usize = 16;
 /// The grid goes so many times beyond dampers that are tuned to the ends of a band.
 const ROOM: f64 = 3.0;
+/// Ends of a band that are farther from the natural frequency than by this factor are taken to be there.
+const FAR: f64 = 1000.0;
+
+/// The ends of a band in multiples of a natural frequency (rad/s) above zero.
+pub fn over_natural(band: [f64; 2], natural: f64) -> [f64; 2] {
+    band.map(|omega| (omega / natural).clamp(1.0 / FAR, FAR))
+}
 
 /// A range of k2 in multiples of Den Hartog's, widened so that it holds, with room, the springs of dampers tuned anywhere in a band. A structure that is
-/// driven off its resonance has its best TMD where it is driven. `band` is in multiples of the natural frequency.
+/// driven off its resonance has its best TMD where it is driven. The band is in [multiples of
+/// the natural frequency](over_natural).
 pub fn springs_for([from, to]: [f64; 2], [lowest, highest]: [f64; 2]) -> [f64; 2] {
     [from.min(lowest.powi(2) / ROOM), to.max(ROOM * highest.powi(2))]
 }
@@ -31,7 +39,7 @@ impl DesignObjective {
             None => [forcing.frequency.get(); 2],
         });
         let all = bands.fold([f64::INFINITY, 0.0], |all, band| [all[0].min(band[0]), all[1].max(band[1])]);
-        all.map(|omega| omega / primary.natural_frequency())
+        over_natural(all, primary.natural_frequency())
     }
 
     /// The designs of a grid over spring and dashpot that are no worse than those beside them, the best first, each with its value. The grid is even in

@@ -110,6 +110,18 @@ fn driven(number: usize, seed: &mut Spread) -> (Scene, [f64; 2], Goal) {
     (scene, band, goal)
 }
 
+/// A force that is as good as constant, or constant, widens no grid without end.
+#[test]
+fn regress_a_band_that_begins_near_zero_is_searched_at_once() {
+    for omega in [0.0, 1e-200, 1e-3] {
+        let (mut scene, _, goal) = driven(0, &mut Spread::new(1));
+        scene.forcing.frequency = NonNegative::new(omega).expect("a frequency");
+        let objective = Objective { omega: None, ..goal.objective };
+        let best = Goal { objective, ..goal }.best_linear(&scene, &Settings::default());
+        assert!(best.is_some_and(|best| best.damper.is_some()), "{omega}");
+    }
+}
+
 /// A structure that is driven off its resonance may have its best TMD where it is driven: no design of a fine grid is better by more than a thousandth.
 #[test]
 fn reference_the_best_linear_damper_beside_a_fine_grid() {
