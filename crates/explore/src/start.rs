@@ -291,13 +291,14 @@ impl Start {
             .map_or([None; 2], |(lower, upper)| [Some(lower), upper])
     }
 
-    /// The range of a slider: of the search's bounds or the band, else about the value.
+    /// The range of a slider: of the search's bounds, as far as a slider can, or of the band, else about the value.
     fn range(&self, parameter: Parameter, value: f64) -> [f64; 2] {
         if parameter.is_frequency() {
             let band = band(&self.study);
             return [band.from, band.to];
         }
         match (self.bounds(parameter), parameter) {
+            ([Some(lower), Some(upper)], _) if value > 0.0 => [lower, upper.min(WIDEST * value)],
             ([Some(lower), Some(upper)], _) => [lower, upper],
             (_, Parameter::Nu1 | Parameter::Nu2 | Parameter::Nu3 | Parameter::Nu4) => [0.0, 0.49],
             (_, Parameter::Restitution) => [0.1, 1.0],
@@ -312,6 +313,9 @@ impl Start {
         }
     }
 }
+
+/// A slider goes to at most so many times its first value.
+const WIDEST: f64 = 30.0;
 
 /// What is told in figures: name, unit and words of each.
 fn figures() -> Vec<[&'static str; 3]> {

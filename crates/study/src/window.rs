@@ -14,6 +14,8 @@ pub const LEFT: f64 = 1e-3;
 const MATTERS: f64 = 1e-2;
 /// Periods of the force in a settled window.
 const PERIODS: f64 = 50.0;
+/// Periods of the slowest force of a band in it, at least.
+const SLOWEST: f64 = 5.0;
 /// Periods of the force before it, at most.
 const MOST_PERIODS: f64 = 10_000.0;
 
@@ -48,13 +50,28 @@ pub fn resolved(text: &str, base: &Path) -> Result<Option<String>, Rule> {
     struct Part {
         window: Value,
         scene: Scene,
+        #[serde(default)]
+        optimize: Value,
     }
     let part = serde_json::from_str::<Part>(text).ok().filter(|part| part.window == "settled");
-    let (Some(Part { mut scene, .. }), Some(place)) = (part, place(text)) else { return Ok(None) };
+    let (Some(Part { mut scene, optimize, .. }), Some(place)) = (part, place(text)) else { return Ok(None) };
     records::read(&mut scene, base)?;
     let Span { t0, end } = Span::settled(&scene)?;
-    let window = format!("{{ \"t0\": {}, \"T\": {} }}", t0.get(), end.get());
+    let over = lowest(&optimize["objective"], &scene).map_or(0.0, |lowest| SLOWEST * TAU / lowest);
+    let end = if scene.forcing.is_transient() { end.get() } else { end.get().max(t0.get() + over) };
+    let window = format!("{{ \"t0\": {}, \"T\": {end} }}", t0.get());
     Ok(Some(format!("{}{window}{}", &text[..place.start], &text[place.end..])))
+}
+
+/// The lowest frequency of the bands of an objective, rad/s.
+fn lowest(objective: &Value, scene: &Scene) -> Option<f64> {
+    let own = objective["omega"]["from"].as_f64().map(|from| match objective["omega"]["relative"] {
+        Value::Bool(true) => from * scene.primary.natural_frequency(),
+        _ => from,
+    });
+    let parts = objective["sum"].as_array().into_iter().flatten();
+    let all = parts.filter_map(|part| lowest(&part["objective"], scene)).chain(own);
+    all.filter(|lowest| *lowest > 0.0).reduce(f64::min)
 }
 
 /// Where the text has the word behind the field `window`.
@@ -114,7 +131,8 @@ pub enum Said {
 #[serde(rename_all = "lowercase")]
 #[expect(dead_code, reason = "for the schema alone")]
 pub enum Word {
-    /// From when the slowest transient of the scene, with its walls open, is below 0.1 % of its start, for 50 periods of the force.
+    /// From when the slowest transient of the scene, with its walls open, is below 0.1 % of its start, for 50 periods of the force, and at least 5
+    /// of the slowest of a band.
     Settled,
 }
 
@@ -144,6 +162,31 @@ mod tests {
         assert_eq!(study.transient(), None);
         let resolved = serde_json::to_string(&study.resolved()).expect("JSON");
         assert_eq!(from_text(&resolved, "building").expect("a study").window, study.window);
+    }
+
+    #[test]
+    fn exact_a_settled_window_holds_periods_of_the_slowest_force() {
+        let mut study: serde_json::Value = serde_json::from_str(&building(&json!("settled"))).expect("JSON");
+        for (objective, slowest) in [
+            (json!({ "omega": { "from": 0.01, "to": 2.0 } }), 0.01),
+            (
+                json!({ "omega": { "from": 0.002, "to": 1.2, "relative": true } }),
+                0.0012 * std::f64::consts::PI,
+            ),
+            (
+                json!({ "sum": [{ "weight": 1, "objective": { "omega": { "from": 0.02, "to": 2.0 } } }] }),
+                0.02,
+            ),
+        ] {
+            study["scene"]["damper"] = json!({ "m2": 2e3, "k2": 7e3, "c2": 700 });
+            study["optimize"] = json!({ "vary": ["k2"], "objective": objective });
+            let read = from_text(&study.to_string(), "building").expect("a study");
+            let length = read.window.end.get() - read.window.t0.get();
+            assert!(
+                (length * slowest / (10.0 * std::f64::consts::PI) - 1.0).abs() < 1e-9,
+                "{length} {slowest}"
+            );
+        }
     }
 
     #[test]

@@ -3,12 +3,15 @@
 use super::settled::settled;
 use crate::Error;
 use retune_model::{Damper, Design, Forcing, Measure, Parameter, PerMeasure, Positive, Scene, Source};
-use retune_optim::{Goal, Limit, Limits, Need, Stiffnesses, Unusable};
+use retune_optim::{FrequencyBand, Goal, Limit, Limits, Need, Response, Stiffnesses, Unusable};
 use retune_study::{Rule, Study};
 use serde::Serialize;
 
 /// A candidate is measured on so many times the samples of a search.
 const MORE: usize = 4;
+/// A band that goes farther from the resonance than by this factor is wide, and its part about it, in multiples of the natural frequency.
+const WIDE: f64 = 2.0;
+const ABOUT: [f64; 2] = [0.8, 1.25];
 /// A search in time looks at every fourth of the stiffnesses that there may be, the ends among them.
 const SPARSE: usize = 4;
 
@@ -65,9 +68,16 @@ impl Candidate {
     /// Measures the scene of a study, with its damper or without, once it has settled.
     pub fn new(what: What, study: &Study) -> Result<Self, Unusable> {
         let study = settled(study);
-        let (settings, goal) = (study.solver.settings(), on_many_samples(&study));
-        let mut steady = goal.own_needs(&study.scene, &settings, &|| true)?;
-        let found = goal.evaluate(&study.scene, &settings, f64::INFINITY)?;
+        let mut steady = own_needs(&study)?;
+        let (goal, settings) = (on_many_samples(&study), study.solver.settings());
+        let mut found = goal.evaluate(&study.scene, &settings, f64::INFINITY)?;
+        if let Some(narrow) = about_resonance(&study) {
+            let there = on_many_samples(&narrow).evaluate(&study.scene, &settings, f64::INFINITY)?;
+            found.violation = found.violation.max(there.violation);
+            for limit in Limit::ALL {
+                found.reached.set(limit, found.reached.get(limit).max(there.reached.get(limit)));
+            }
+        }
         let limits = goal.limits;
         let binding =
             limits.active(&found.reached).into_iter().map(|limit| (limit, found.reached.get(limit)));
@@ -107,9 +117,7 @@ impl Candidate {
     /// The [goal](Self::goal) of the scene of a study, to the same bits, with which alone a search ends; none where it has no bound.
     pub fn goal_of(study: &Study) -> Option<f64> {
         let study = settled(study);
-        let needs =
-            on_many_samples(&study).own_needs(&study.scene, &study.solver.settings(), &|| true).ok()?;
-        let Need { value, .. } = needs.get(study.quantity());
+        let Need { value, .. } = own_needs(&study).ok()?.get(study.quantity());
         (value.is_finite() && value > 0.0).then_some(value)
     }
 
@@ -197,6 +205,39 @@ fn on_many_samples(study: &Study) -> Goal {
         }
     });
     goal
+}
+
+/// The largest values over the band, and over the part of a wide one about the resonance, whose peak may lie between its samples.
+fn own_needs(study: &Study) -> Result<PerMeasure<Need>, Unusable> {
+    let needs =
+        |study: &Study| on_many_samples(study).own_needs(&study.scene, &study.solver.settings(), &|| true);
+    let mut all = needs(study)?;
+    if let Some(narrow) = about_resonance(study) {
+        let there = needs(&narrow)?;
+        for measure in Measure::ALL {
+            if there.get(measure).value > all.get(measure).value {
+                all.set(measure, there.get(measure));
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// The study with the part of its band about the resonance of the structure, where the band goes far beyond; none of a narrow band, of one that leaves
+/// out the resonance, and of a steady motion in closed form.
+pub(super) fn about_resonance(study: &Study) -> Option<Study> {
+    let (objective, primary) = (study.objective(), &study.scene.primary);
+    let (band, natural) = (objective.omega?.of(primary), primary.natural_frequency());
+    let is_wide = band.from < natural / WIDE || band.to > natural * WIDE;
+    if !is_wide || natural < band.from || natural > band.to || objective.response == Response::Steady {
+        return None;
+    }
+    let end = |omega: f64| Positive::new(omega.clamp(band.from, band.to)).ok();
+    let [from, to] = ABOUT.map(|share| end(share * natural));
+    let about = FrequencyBand { from: from?, to: to?, samples: band.samples, relative: false };
+    let mut study = study.clone();
+    study.optimize.as_mut()?.objective.omega = Some(about);
+    Some(study)
 }
 
 /// The study by which a search in time goes: with k1 at few of the values that it may have.

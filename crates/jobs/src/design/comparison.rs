@@ -2,14 +2,14 @@
 
 use super::candidate::{Candidate, OtherSign, What, with_design};
 use super::requirements::{Constraint, Dampers, Requirements};
-use super::trust::{certified, doubt, first_feasible, striking, trusted, worst_nearby};
+use super::trust::{certified, doubt, first_feasible, is_sensitive, striking, trusted, worst_nearby};
 use super::words::{parameters, question, sized};
 use super::{Formula, ssvi, tmd};
 use crate::certify::Certificate;
 use crate::contacts::Contacts;
 use crate::{Error, Observer};
 use retune_model::{Measure, Parameter, Scene};
-use retune_optim::{Limit, Need};
+use retune_optim::{Limit, Limits, Need};
 use retune_store::Journal;
 use retune_study::Study;
 use serde::{Serialize, Serializer};
@@ -17,6 +17,8 @@ use serde_json::{Map, Value, json};
 
 /// A goal that is larger by less than this share is as good: the damper without walls is recommended.
 const SAME: f64 = 0.05;
+/// A stroke that is this share of the best TMD's without limits is kept small by them.
+const SMALL: f64 = 0.5;
 /// Halvings of the mass that would keep the limits, as a share of the structure's, in closed form and in time; and the largest that is looked at.
 const HALVINGS: [usize; 2] = [12, 5];
 const HEAVIEST: f64 = 0.3;
@@ -146,7 +148,8 @@ pub(super) fn compare(
     let (mut ssvi, mut tried, mut judged) = (None, None, None);
     if requirements.dampers != Dampers::Tmd {
         watch.result("SSVI NES, from known designs: some seconds (Ctrl-C leaves what stands above)")?;
-        let found = ssvi::best(ssvi_study, &tmd, &[], (journal, "ssvi"), watch)?;
+        let strokes = strokes(requirements, &tmd)?;
+        let found = ssvi::best(ssvi_study, (&tmd, &strokes), &[], (journal, "ssvi"), watch)?;
         tried = Some(found.tried);
         let mut all = striking(ssvi_study, &found);
         let rival = requirements.dampers == Dampers::Ssvi || !tmd.feasible;
@@ -163,11 +166,11 @@ pub(super) fn compare(
     }
     let other_sign = ssvi.as_ref().and_then(Candidate::with_other_sign);
     let much_better = |certificate: &Certificate| (1.0 + SAME) * worst_nearby(certificate) < tmd.goal;
-    let is_trusted = judged
-        .as_ref()
-        .is_some_and(|found| doubt(found) <= 1 || requirements.run().is_some() && much_better(found))
-        && !(requirements.driving.has_either_sign()
-            && other_sign.as_ref().is_some_and(|other| other.goal > tmd.goal || !other.broken.is_empty()));
+    let is_trusted = judged.as_ref().is_some_and(|found| {
+        let weighed = requirements.run().is_some() || is_sensitive(found);
+        doubt(found) <= 1 || weighed && much_better(found)
+    }) && !(requirements.driving.has_either_sign()
+        && other_sign.as_ref().is_some_and(|other| other.goal > tmd.goal || !other.broken.is_empty()));
     let choice = choice(requirements, &tmd, ssvi.as_ref(), is_trusted);
     let built = ssvi.as_ref().filter(|_| choice == Some(What::Ssvi));
     let costs = costs(requirements, (&tmd, built), journal, watch)?;
@@ -205,6 +208,19 @@ pub(super) fn compare(
         certificate,
         ssvi_certificate: judged,
     })
+}
+
+/// The strokes by which the gaps of known designs are scaled: that of the best TMD, and, where limits keep it small, that of the best without them.
+fn strokes(requirements: &Requirements, tmd: &Candidate) -> Result<Vec<f64>, Error> {
+    let own = tmd.value(Measure::Stroke);
+    if requirements.constraints().is_empty() {
+        return Ok(vec![own]);
+    }
+    let free = Requirements { limits: Limits::default(), k2_max: None, ..requirements.clone() };
+    let study = free.tmd()?;
+    let formulas = Formula::all(&free, &study.scene.primary);
+    let other = tmd_of(&study, tmd::best(&study, &formulas)?)?.value(Measure::Stroke);
+    Ok(if own < SMALL * other { vec![own, other] } else { vec![own] })
 }
 
 /// The one to build: a damper without walls is simpler to build and easier to trust; one with walls must be much better, and hold where it
@@ -246,7 +262,7 @@ fn costs(
             let own = |parameter: Parameter| ssvi.damper().map_or(f64::NAN, |damper| parameter.get(&damper));
             let start = Parameter::PAPER.map(own);
             let stage = format!("ssvi without {}", constraint.name());
-            let found = ssvi::best(&study, tmd, &[start.to_vec()], (journal, &stage), watch)?;
+            let found = ssvi::best(&study, (tmd, &[]), &[start.to_vec()], (journal, &stage), watch)?;
             first_feasible(&mut striking(&study, &found))?.map(|(_, candidate)| candidate)
         } else {
             None

@@ -123,10 +123,13 @@ impl Constraint {
 /// Periods of the natural frequency before a run of an SSVI NES counts, and all of them.
 const PASSED: f64 = 50.0;
 const PERIODS: f64 = 100.0;
+/// Periods of the slowest force before a run counts, and in its window, at least.
+const SLOW: f64 = 5.0;
 /// Stiffnesses of a structure whose k1 may be off; of a TMD in closed form the largest value is searched between them, too.
 const STIFFNESSES: usize = 17;
-/// Largest dashpot of a TMD, in those of Den Hartog's: it all but holds the mass to the structure, so that its stroke is small.
-pub(super) const HELD: f64 = 1e4;
+/// Largest spring and dashpot of a TMD, in those of Den Hartog's: they hold the mass to the structure, so that its stroke is as small as may be.
+const STIFFEST: f64 = 200.0;
+const HELD: f64 = 1e6;
 /// Damping that an undamped structure counts as when gaps and tolerances are scaled.
 const LEAST_DAMPING: f64 = 0.01;
 
@@ -239,7 +242,7 @@ impl Requirements {
     pub fn tmd(&self) -> Result<Study, Error> {
         let ([k2, c2], _, size) = self.scales()?;
         let stiffest = |factor: f64| springs_for([1.0, factor], self.driven())[1];
-        let most = self.k2_max.unwrap_or(stiffest(20.0) * k2);
+        let most = self.k2_max.unwrap_or(stiffest(STIFFEST) * k2);
         let softest = springs_for([0.05, 1.0], self.driven())[0];
         let axis = |from: f64, to: f64| json!({ "from": from, "to": to, "points": 21, "scale": "log" });
         // A TMD touches nothing; of a cavity its stroke takes half.
@@ -274,12 +277,12 @@ impl Requirements {
         let stiffest = k2.min(most);
         let mut limits = json!(self.limits);
         if !self.limits.is_empty() && self.run().is_none() {
-            limits["from"] = json!(PASSED * self.period());
+            limits["from"] = json!(self.steady().from);
         }
         let optimize = json!({
             "vary": ["k2", "c2", "D", "C"],
             "objective": self.objective(false),
-            "bounds": { "k2": [0, most], "c2": [0, 50.0 * c2], "D": [0, 4.0 * reach], "C": [0, 8.0 * reach] },
+            "bounds": { "k2": [0, most], "c2": [0, 50.0 * c2], "D": [0, 20.0 * reach], "C": [0, 40.0 * reach] },
             "limits": limits,
             "surf": {
                 "k2": axis(0.08 * stiffest, stiffest, "log", 6),
@@ -317,6 +320,14 @@ impl Requirements {
         objective
     }
 
+    /// The window of a damper with walls under a harmonic: as many periods of the structure before it as in it, and some of the slowest force.
+    fn steady(&self) -> Window {
+        let slowest = self.driving.band().map_or(0.0, |[from, _]| TAU / from);
+        let [passed, length] = [PASSED, PERIODS - PASSED].map(|periods| periods * self.period());
+        let from = passed.max(SLOW * slowest);
+        Window { from, to: from + length.max(SLOW * slowest) }
+    }
+
     /// The natural period, s.
     fn period(&self) -> f64 {
         TAU / self.natural_frequency()
@@ -339,8 +350,7 @@ impl Requirements {
 
     /// A study of 100 periods of the structure, the first half of which passes before maxima are taken, or of a shock or a record.
     fn study(&self, name: &str, damper: Value, optimize: Value) -> Result<Study, Error> {
-        let steady = Window { from: PASSED * self.period(), to: PERIODS * self.period() };
-        let Window { from, to } = self.run().unwrap_or(steady);
+        let Window { from, to } = self.run().unwrap_or_else(|| self.steady());
         let study = json!({
             "name": name,
             "scene": { "primary": self.primary(false)?, "forcing": self.forcing()?, "damper": damper },

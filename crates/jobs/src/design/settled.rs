@@ -1,5 +1,6 @@
 //! When the motion of a candidate counts: once its transients have decayed.
 
+use super::candidate::about_resonance;
 use retune_model::{NonNegative, Positive, Scene};
 use retune_study::{Span, Study};
 use std::f64::consts::TAU;
@@ -22,7 +23,7 @@ pub(super) fn settling(study: &Study, scene: &Scene, most: f64) -> Study {
 }
 
 /// The study by which a candidate is measured. A damper that strikes its walls may damp less than with its walls open: where the structure alone
-/// decays slowly, the window is moved until the goal in it no longer grows.
+/// decays slowly, the window is moved until the goal in it no longer grows, over the band and at the worst place that was found in it.
 pub(super) fn settled(study: &Study) -> Study {
     let mut own = settling(study, &study.scene, SETTLED);
     let bare = Scene { damper: None, ..study.scene };
@@ -30,16 +31,38 @@ pub(super) fn settled(study: &Study) -> Study {
         return own;
     }
     let most = SETTLED * TAU / study.scene.forcing.frequency.get();
-    let mut value = own.energy(&own.scene);
+    let mut found = worst(&own);
     while 2.0 * own.window.t0.get() <= most {
+        let Some((value, place)) = found else { break };
         let later = beginning_at(&own, 2.0 * own.window.t0.get());
-        let next = later.energy(&later.scene);
-        if !value.zip(next).is_some_and(|(value, next)| next > (1.0 + GROWTH) * value) {
+        let next = worst(&later);
+        let grows = |from: f64, to: f64| to > (1.0 + GROWTH) * from;
+        let grows_there =
+            || at(&own, &place).zip(at(&later, &place)).is_some_and(|(from, to)| grows(from, to));
+        if !next.is_some_and(|(next, _)| grows(value, next)) && !grows_there() {
             break;
         }
-        (own, value) = (later, next);
+        (own, found) = (later, next);
     }
     own
+}
+
+/// The goal of a study, and the scene of its worst run; none where there is no value.
+fn worst(study: &Study) -> Option<(f64, Scene)> {
+    let worst = |study: &Study| {
+        let goal = study.goal();
+        let found = goal.evaluate(&study.scene, &study.solver.settings(), f64::INFINITY).ok()?;
+        Some((found.value, found.worst_run(study.scene, &goal)))
+    };
+    let (all, narrow) = (worst(study)?, about_resonance(study).and_then(|narrow| worst(&narrow)));
+    Some(narrow.filter(|narrow| narrow.0 > all.0).unwrap_or(all))
+}
+
+/// The goal in one run.
+fn at(study: &Study, scene: &Scene) -> Option<f64> {
+    let mut goal = study.goal();
+    goal.objective.for_each_term(&mut |term| (term.omega, term.k1) = (None, None));
+    Some(goal.evaluate(scene, &study.solver.settings(), f64::INFINITY).ok()?.value)
 }
 
 /// A study whose window, as long as it is, and limits begin at t0, s.

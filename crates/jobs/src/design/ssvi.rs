@@ -4,7 +4,7 @@
 //!
 //! It is no global search: `retune optimize` of the study that is written makes one. It takes seconds.
 
-use super::candidate::{Candidate, at_few_stiffnesses};
+use super::candidate::{Candidate, about_resonance, at_few_stiffnesses};
 use super::settled::{settles_late, settling};
 use super::tmd::simplex;
 use super::words::sized;
@@ -18,7 +18,8 @@ use retune_store::Journal;
 use retune_study::{Search, Study};
 use std::sync::{Mutex, PoisonError};
 
-/// Good designs, dimensionless: k2/(m2 ω1²); c2/(2 m2 ω1) times √(0.06/μ) of a mass ratio μ; D and C as shares of the stroke of the best TMD.
+/// Good designs, dimensionless: k2/(m2 ω1²); c2/(2 m2 ω1) times √(0.06/μ) of a mass ratio μ; D and C as shares of the stroke of the best TMD. Driven
+/// off its resonance, the nearest frequency of the band takes the place of ω1.
 /// From `results`: `ssvi`, `ssvi-global`, `ssvi-robust`, `ssvi-loss`, `table2` and the softest of `fronts`, each for μ = 0.06.
 const KNOWN: [[f64; 4]; 6] = [
     [0.246, 0.126, 0.106, 4.05],
@@ -32,7 +33,7 @@ const RATIO: f64 = 0.06;
 /// The best TMD with both gaps these shares of its stroke.
 const NEAR: [f64; 3] = [0.5, 0.75, 0.95];
 /// Dashpots and gaps of known designs are tried at these multiples.
-const DASHPOTS: [f64; 3] = [0.6, 1.0, 1.7];
+const DASHPOTS: [f64; 4] = [0.6, 1.0, 1.7, 4.0];
 const GAPS: [f64; 3] = [0.4, 1.0, 2.5];
 /// A design with this many times the value of the TMD is not worth its runs.
 const WORTH: f64 = 4.0;
@@ -61,18 +62,19 @@ pub(super) struct Ends {
 type Start = (usize, Vec<f64>);
 
 /// The starts: known designs and the TMD, within the bounds of the search.
-fn starts(study: &Study, search: &Search, tmd: &Candidate) -> Vec<Start> {
-    let Scene { primary, .. } = study.scene;
-    let (m2, natural) = (search.damper.mass.get(), primary.natural_frequency());
-    let stroke = tmd.value(Measure::Stroke);
+fn starts(study: &Study, search: &Search, (tmd, strokes): (&Candidate, &[f64])) -> Vec<Start> {
+    let Scene { primary, forcing, .. } = study.scene;
+    // Off the resonance it is tuned to where the structure is driven, which is the frequency of the scene.
+    let driven = if forcing.is_transient() { primary.natural_frequency() } else { forcing.frequency.get() };
+    let (m2, own) = (search.damper.mass.get(), tmd.value(Measure::Stroke));
     let more = (m2 / primary.mass.get() / RATIO).sqrt();
-    let near = |share: &f64| (0, [tmd.k2(), tmd.c2(), share * stroke, share * stroke]);
+    let near = |share: &f64| (0, [tmd.k2(), tmd.c2(), share * own, share * own]);
     let mut all: Vec<(usize, [f64; 4])> = NEAR.iter().map(near).collect();
     for (number, [k2, c2, d, c]) in KNOWN.into_iter().enumerate() {
         for dashpot in DASHPOTS {
-            for gap in GAPS {
-                let c2 = dashpot * c2 * more * 2.0 * m2 * natural;
-                all.push((number + 1, [k2 * m2 * natural * natural, c2, gap * d * stroke, gap * c * stroke]));
+            for (stroke, gap) in strokes.iter().flat_map(|stroke| GAPS.map(|gap| (stroke, gap))) {
+                let c2 = dashpot * c2 * more * 2.0 * m2 * driven;
+                all.push((number + 1, [k2 * m2 * driven * driven, c2, gap * d * stroke, gap * c * stroke]));
             }
         }
     }
@@ -174,7 +176,10 @@ pub(super) fn is_lossy(Scene { primary, forcing, damper }: &Scene) -> bool {
 fn sought(study: &Study, tmd: &Candidate) -> (Study, bool) {
     let with_tmd = &tmd.study.scene;
     let slow = is_lossy(&study.scene) || settles_late(study, with_tmd);
-    let mut sought = at_few_stiffnesses(&settling(study, with_tmd, PASSED_IN_SEARCH));
+    // Samples of a wide band say nothing of the resonance, at which an SSVI NES does its work.
+    let narrow = about_resonance(study);
+    let mut sought =
+        at_few_stiffnesses(&settling(narrow.as_ref().unwrap_or(study), with_tmd, PASSED_IN_SEARCH));
     let band = sought.optimize.as_mut().and_then(|optimize| optimize.objective.omega.as_mut());
     if let Some(band) = band.filter(|_| slow) {
         band.samples = band.samples.min(SAMPLES_WHERE_SLOW);
@@ -182,10 +187,10 @@ fn sought(study: &Study, tmd: &Candidate) -> (Study, bool) {
     (sought, slow)
 }
 
-/// Searches from what is known; `beside` more starts, as the end of a search under other limits.
+/// Searches from what is known, its gaps scaled by each of some strokes; `beside` more starts, as the end of a search under other limits.
 pub(super) fn best(
     study: &Study,
-    tmd: &Candidate,
+    (tmd, strokes): (&Candidate, &[f64]),
     beside: &[Vec<f64>],
     (journal, stage): (&Journal, &str),
     watch: &dyn Observer,
@@ -203,7 +208,7 @@ pub(super) fn best(
     // Under other limits it is no answer to what was asked.
     let asked = beside.is_empty();
     let beside: Vec<Start> = beside.iter().cloned().enumerate().collect();
-    let starts = if beside.is_empty() { starts(study, &search, tmd) } else { beside };
+    let starts = if beside.is_empty() { starts(study, &search, (tmd, strokes)) } else { beside };
     let most = if tmd.feasible { WORTH * tmd.goal } else { f64::INFINITY };
     let name = format!("{stage} known");
     let value = kept(&coarse, journal, &name, || ());

@@ -54,11 +54,18 @@ pub(super) fn doubt(certificate: &Certificate) -> u8 {
     }
 }
 
-/// The worst within 1 % of each parameter, and of 95 in 100 neighbours: of what a shock leaves it may be a multiple, and still a small part of
-/// what it is with another damper.
+/// Whether all that is held against it is that small errors change it much, in a regular way: how much is known.
+pub(super) fn is_sensitive(certificate: &Certificate) -> bool {
+    certificate.judged.verdict == Some(Verdict::Sensitive) && certificate.judged.predictable
+}
+
+/// The worst within 1 % of each parameter, of 95 in 100 neighbours, on more samples and of the motions from other starts: it may be a multiple of its own
+/// value, and still a small part of what it is with another damper.
 pub(super) fn worst_nearby(certificate: &Certificate) -> f64 {
     let measured = &certificate.measured;
-    let worst = measured.sensitivity.iter().map(|of| of.worst);
+    let motion = measured.motions.as_ref().and_then(|motions| motions.largest.as_ref());
+    let others = motion.map(|other| other.value.value).into_iter().chain(measured.finer);
+    let worst = measured.sensitivity.iter().map(|of| of.worst).chain(others);
     worst.fold(measured.neighbourhood.high, f64::max)
 }
 

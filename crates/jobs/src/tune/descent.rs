@@ -3,7 +3,7 @@
 use super::log::worth;
 use super::objective::Task;
 use super::refine::{Descended, Refined, Run};
-use super::tmd::tmd;
+use super::tmd::{best_steady, tmd};
 use crate::Error;
 use rayon::prelude::*;
 use retune_optim::{Counts, DesignObjective, Foot, INFEASIBLE, Minimum, Point, Procedure, Row, Stop};
@@ -13,6 +13,8 @@ use std::cell::OnceCell;
 
 /// A value that is lower by less than this share is none that a descent has found.
 const GAIN: f64 = 1e-5;
+/// The best TMD of a steady objective takes the place of an end that is above it by this share.
+const BETTER: f64 = 1e-4;
 
 /// Goes down from the end of every refinement, and from the best TMD of a damper with walls: in a kink, where several peaks are equally high or a
 /// limit is reached, a simplex stops before it arrives. An end that is better takes the place of the refinement's.
@@ -42,7 +44,13 @@ pub(super) fn finish(task: &Task, refined: &mut Refined) -> Result<(), Error> {
             run.descent = Some(Descended { from, evaluations: counts.evaluations });
         }
     }
-    if let (Some(Foot { from, end: Point { x, value }, counts }), Some(best)) = (feet.flatten().next(), tmd)
+    let mut of_tmd = tmd.zip(feet.flatten().next());
+    if of_tmd.is_none() {
+        // In closed form no search has to end above it.
+        let least = runs.iter().map(|run| run.minimum.value).fold(f64::INFINITY, f64::min);
+        of_tmd = best_steady(study, search).filter(|(_, foot)| foot.end.value < (1.0 - BETTER) * least);
+    }
+    if let Some((best, Foot { from, end: Point { x, value }, counts })) = of_tmd
         && value.is_finite()
     {
         let row = Row { iteration: 0, func_count: 1, procedure: Procedure::Start, best, value: from };

@@ -1,7 +1,8 @@
 //! The best TMD that a damper with walls can be: its gaps as wide as bounds and limits allow, its spring and dashpot the best in closed form.
 
+use super::objective::searched;
 use retune_model::{Damper, Measure, NonNegative, Parameter, Positive};
-use retune_optim::{DesignObjective, Goal, Limit, Response};
+use retune_optim::{DesignObjective, Foot, Goal, Limit, Response};
 use retune_study::{Search, Study};
 
 /// The springs and dashpots from which the best is taken, in those of Den Hartog's.
@@ -38,6 +39,26 @@ pub(super) fn tmd(study: &Study, search: &Search) -> Option<Vec<f64>> {
         }
     }
     Some(tmd)
+}
+
+/// The best spring and dashpot of a steady objective, in closed form: the end of a descent from the deepest valley of a grid, under all limits and bounds
+/// of the study. None of another objective.
+pub(super) fn best_steady(study: &Study, search: &Search) -> Option<(Vec<f64>, Foot)> {
+    if !study.goal().objective.is_steady() {
+        return None;
+    }
+    let of = searched(study, search, &search.variables);
+    let springs = |variable: &Parameter| matches!(variable, Parameter::K2 | Parameter::C2);
+    let bounds = &search.options.bounds;
+    // Another parameter, as the mass, begins at that of the study.
+    let mut start: Vec<f64> = search.variables.iter().map(|variable| variable.get(&search.damper)).collect();
+    let which: Vec<usize> = (0..start.len()).filter(|&i| springs(&search.variables[i])).collect();
+    let alone = searched(study, search, &which.iter().map(|&i| search.variables[i]).collect::<Vec<_>>());
+    let own: Vec<_> = which.iter().map(|&i| bounds[i]).collect();
+    let (_, valley) = alone.valleys(TUNINGS, &own).into_iter().next().filter(|_| !which.is_empty())?;
+    which.iter().zip(valley).for_each(|(&i, value)| start[i] = value);
+    let foot = of.descend(bounds, &start);
+    Some((start, foot))
 }
 
 /// The steady objective over the spring and the dashpot of the damper without its walls, its stroke at most `room`.

@@ -159,9 +159,9 @@ fn regress_the_row_of_the_worst_k1_is_the_worst() {
     make(&desk, &good(asked(floor).requirements()), &Silent);
     let found = desk.read_json("out/design.json");
     let (own, off) = (&found["candidates"][2]["steady"]["a1max"], &found["k1_off"][2]);
-    let k1 = 5000.0 * (std::f64::consts::TAU * 2.0).powi(2);
-    assert!((own["k1"].as_f64().expect("a number") / (0.95 * k1) - 1.0).abs() < 1e-9, "{own}");
-    assert_eq!(own["value"], off[1], "{found}");
+    let share = own["k1"].as_f64().expect("a number") / (5000.0 * (std::f64::consts::TAU * 2.0).powi(2));
+    let row = [1.0, 0.95, 1.05].iter().position(|row| (share / row - 1.0).abs() < 1e-9);
+    assert_eq!(own["value"], off[row.expect("an end of the range")], "{found}");
 }
 
 /// Where every known design breaks the limits by far no descent begins, which would take minutes: the answer says what comes nearest.
@@ -182,8 +182,8 @@ fn contract_limits_far_below_what_dampers_reach_are_answered_at_once() {
         );
         found["designs_evaluated"].as_u64().expect("a number")
     };
-    assert_eq!(evaluated("100 N"), 58);
-    assert!(evaluated("4 kN") > 58);
+    assert_eq!(evaluated("100 N"), 76);
+    assert!(evaluated("4 kN") > 76);
 }
 
 /// A dashpot that all but holds the mass to the structure keeps a small stroke.
@@ -206,7 +206,7 @@ fn regress_a_stroke_that_a_strong_dashpot_keeps_is_kept() {
 #[test]
 fn contract_walls_that_are_struck_after_rest_alone_are_said_to_be() {
     let far =
-        json!({ "m1": "2t", "f1": "10Hz", "zeta": "5%", "force": "1kN", "band": "4Hz..6Hz", "mass": "5%" });
+        json!({ "m1": "2t", "f1": "10Hz", "zeta": "0.5%", "force": "1kN", "band": "5Hz..6Hz", "mass": "2%" });
     let desk = Desk::new();
     make(&desk, &good(asked(far).requirements()), &Silent);
     let answer = flat(&desk.read("out/answer.txt"));
@@ -229,9 +229,56 @@ fn contract_walls_that_lose_energy_are_answered_within_a_number_of_evaluations()
     assert!(told.len() > 3 && told.is_sorted_by(|before, after| after <= before), "{told:?}");
     let answer = desk.read_json("out/design.json");
     let evaluated = answer["designs_evaluated"].as_u64().expect("a number");
-    assert!((58..=58 + 4 * 60).contains(&evaluated), "{evaluated}");
+    assert!((76..=76 + 4 * 60).contains(&evaluated), "{evaluated}");
     // The last that is told is the one of the table, to the four digits of its words.
     let last = told[told.len() - 1];
     assert!((largest(&answer, 2, "E1max") / last - 1.0).abs() < 5e-4, "{last}: {answer}");
     assert!(largest(&answer, 2, "E1max") < 1.6 * largest(&answer, 1, "E1max"), "{answer}");
+}
+
+/// What small errors do to it is known, and it is far better all the same.
+#[test]
+fn regress_a_damper_that_is_sensitive_but_far_better_is_built() {
+    let soft = json!({
+        "m1": "40t", "f1": "2Hz", "zeta": "0.5%", "force": "280N", "mass": "1%", "band": "1.8Hz..2.2Hz",
+        "limits": { "k2": "16 kN/m" }
+    });
+    let desk = Desk::new();
+    make(&desk, &good(asked(soft).requirements()), &Silent);
+    let found = desk.read_json("out/design.json");
+    assert_eq!(
+        (&found["build"], &found["certificate"]["verdict"]),
+        (&json!("SSVI NES"), &json!("sensitive"))
+    );
+    assert!(10.0 * largest(&found, 2, "E1max") < largest(&found, 1, "E1max"), "{found}");
+}
+
+/// Samples of a wide band miss the resonance: the same damper was found to have 904 J over 1 to 20 Hz. Limits made the TMD's stroke small, and with it the
+/// gaps that were tried: 402 J over 1.8 to 2.2 Hz.
+#[test]
+#[ignore = "slow: `just lab test-slow`"]
+fn regress_a_wide_band_and_a_soft_spring_hide_no_damper() {
+    for (band, most) in [("1.8Hz..2.2Hz", 5.0), ("1Hz..20Hz", 60.0)] {
+        let bridge = json!({
+            "m1": "40t", "f1": "2Hz", "zeta": "0.1%", "force": "280N", "mass": "0.5%", "band": band,
+            "limits": { "k2": "8 kN/m" }
+        });
+        let desk = Desk::new();
+        make(&desk, &good(asked(bridge).requirements()), &Silent);
+        let found = desk.read_json("out/design.json");
+        assert!(largest(&found, 2, "E1max") < most, "{band}: {found}");
+    }
+}
+
+/// Far below resonance a window of periods of the structure would be a part of one of the force.
+#[test]
+fn regress_a_slow_force_is_seen_for_whole_periods() {
+    let slow = json!({
+        "m1": "40t", "f1": "2Hz", "zeta": "2%", "force": "280N", "mass": "5%", "band": "0.005Hz..0.006Hz",
+        "limits": { "stroke": "1 m" }
+    });
+    let study = good(good(asked(slow).requirements()).ssvi());
+    let (t0, end) = (study.window.t0.get(), study.window.end.get());
+    let from = study.optimize.and_then(|optimize| optimize.limits.from).map(|from| from.get());
+    assert!(t0 >= 999.9 && end - t0 >= 999.9 && from == Some(t0), "{t0} {end} {from:?}");
 }

@@ -160,3 +160,21 @@ fn contract_a_branch_ends_where_its_parameter_does() {
     let said = traced(&desk, &options);
     assert!(said.contains("ends where the range ends") && !said.contains("was lost"), "{said}");
 }
+
+/// The points of a global search may all lie far from a narrow optimum: it ended at 17,000 m/s², beside 1217.
+#[test]
+fn regress_no_search_of_a_steady_objective_ends_far_above_the_best_tmd() {
+    let objective =
+        json!({ "omega": { "from": 255.75, "to": 335.99 }, "response": "steady", "quantity": "a1max" });
+    let primary = json!({ "m1": 573.83, "c1": 3.3642, "k1": 4.931e7 });
+    let damper = json!({ "m2": 5.7383, "k2": 493_096, "c2": 168.21 });
+    let mut study =
+        tmd(&primary, 293.14, &damper, &objective, &json!({ "k2": [0, 4.93096e8], "c2": [0, 1.68212e6] }));
+    study["scene"]["forcing"] = json!({ "imbalance": 0.57383, "omega": 293.14 });
+    study["window"] = json!({ "t0": 0, "T": 0.43 });
+    study["optimize"]["global"] = json!({ "samples": 128, "searches": 3, "evaluations": 200 });
+    let desk = Desk::with(&study);
+    search(&desk, "study.json", "out");
+    let optimum = desk.read_json("out/optimum.json");
+    assert!(number(&optimum, "/a1max") < 1220.0, "{optimum}");
+}
