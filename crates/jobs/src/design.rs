@@ -11,6 +11,7 @@ mod motion;
 mod page;
 mod reading;
 mod requirements;
+mod resonance;
 mod settled;
 mod ssvi;
 mod table;

@@ -1,17 +1,15 @@
 //! A damper that may be built, or none: what it has of each quantity over the whole band.
 
+use super::resonance::about_resonance;
 use super::settled::settled;
 use crate::Error;
 use retune_model::{Damper, Design, Forcing, Measure, Parameter, PerMeasure, Positive, Scene, Source};
-use retune_optim::{FrequencyBand, Goal, Limit, Limits, Need, Response, Stiffnesses, Unusable};
+use retune_optim::{Goal, Limit, Limits, Need, Stiffnesses, Unusable};
 use retune_study::{Rule, Study};
 use serde::Serialize;
 
 /// A candidate is measured on so many times the samples of a search.
 const MORE: usize = 4;
-/// A band that goes farther from the resonance than by this factor is wide, and its part about it, in multiples of the natural frequency.
-const WIDE: f64 = 2.0;
-const ABOUT: [f64; 2] = [0.8, 1.25];
 /// A search in time looks at every fourth of the stiffnesses that there may be, the ends among them.
 const SPARSE: usize = 4;
 
@@ -221,23 +219,6 @@ fn own_needs(study: &Study) -> Result<PerMeasure<Need>, Unusable> {
         }
     }
     Ok(all)
-}
-
-/// The study with the part of its band about the resonance of the structure, where the band goes far beyond; none of a narrow band, of one that leaves
-/// out the resonance, and of a steady motion in closed form.
-pub(super) fn about_resonance(study: &Study) -> Option<Study> {
-    let (objective, primary) = (study.objective(), &study.scene.primary);
-    let (band, natural) = (objective.omega?.of(primary), primary.natural_frequency());
-    let is_wide = band.from < natural / WIDE || band.to > natural * WIDE;
-    if !is_wide || natural < band.from || natural > band.to || objective.response == Response::Steady {
-        return None;
-    }
-    let end = |omega: f64| Positive::new(omega.clamp(band.from, band.to)).ok();
-    let [from, to] = ABOUT.map(|share| end(share * natural));
-    let about = FrequencyBand { from: from?, to: to?, samples: band.samples, relative: false };
-    let mut study = study.clone();
-    study.optimize.as_mut()?.objective.omega = Some(about);
-    Some(study)
 }
 
 /// The study by which a search in time goes: with k1 at few of the values that it may have.

@@ -1,6 +1,6 @@
 //! When the motion of a candidate counts: once its transients have decayed.
 
-use super::candidate::about_resonance;
+use super::resonance::about_resonance;
 use retune_model::{NonNegative, Positive, Scene};
 use retune_study::{Span, Study};
 use std::f64::consts::TAU;

@@ -4,7 +4,8 @@
 //!
 //! It is no global search: `retune optimize` of the study that is written makes one. It takes seconds.
 
-use super::candidate::{Candidate, about_resonance, at_few_stiffnesses};
+use super::candidate::{Candidate, at_few_stiffnesses};
+use super::resonance::about_resonance;
 use super::settled::{settles_late, settling};
 use super::tmd::simplex;
 use super::words::sized;

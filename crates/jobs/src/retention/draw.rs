@@ -204,7 +204,7 @@ pub(super) fn force(retained: &Retained) -> Drawing {
     };
     let legend = all().map(key).collect();
     let x = Axis::linear(
-        &format!("{symbol}, {}", amplitude.unit()),
+        format!("{symbol}, {}", amplitude.unit()),
         (0.0, if right > 0.0 { 1.03 * right } else { 1.0 }),
     );
     let y = Axis::linear("E1max / without a damper", (0.0, if top > 0.0 { 1.08 * top } else { 1.0 }));
