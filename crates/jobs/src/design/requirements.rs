@@ -275,6 +275,9 @@ impl Requirements {
         let most = self.k2_max.unwrap_or(springs_for([1.0, 4.0], self.driven())[1] * k2);
         let axis = |from: f64, to: f64, scale: &str, points: u32| json!({ "from": from, "to": to, "points": points, "scale": scale });
         let stiffest = k2.min(most);
+        // One that is hardly damped moves farther, and needs more room before a damper stops it.
+        let zeta = self.c1 / (2.0 * self.m1 * self.natural_frequency());
+        let most_gap = reach * (0.5 * LEAST_DAMPING / zeta).clamp(1.0, 5.0);
         let mut limits = json!(self.limits);
         if !self.limits.is_empty() && self.run().is_none() {
             limits["from"] = json!(self.steady().from);
@@ -282,7 +285,7 @@ impl Requirements {
         let optimize = json!({
             "vary": ["k2", "c2", "D", "C"],
             "objective": self.objective(false),
-            "bounds": { "k2": [0, most], "c2": [0, 50.0 * c2], "D": [0, 20.0 * reach], "C": [0, 40.0 * reach] },
+            "bounds": { "k2": [0, most], "c2": [0, 50.0 * c2], "D": [0, 4.0 * most_gap], "C": [0, 8.0 * most_gap] },
             "limits": limits,
             "surf": {
                 "k2": axis(0.08 * stiffest, stiffest, "log", 6),

@@ -33,14 +33,15 @@ const KNOWN: [[f64; 4]; 6] = [
 const RATIO: f64 = 0.06;
 /// The best TMD with both gaps these shares of its stroke.
 const NEAR: [f64; 3] = [0.5, 0.75, 0.95];
-/// Dashpots and gaps of known designs are tried at these multiples.
-const DASHPOTS: [f64; 4] = [0.6, 1.0, 1.7, 4.0];
+/// Dashpots and gaps of known designs are tried at these multiples; far from where they are known, as under a small damping, one is much stronger.
+const DASHPOTS: [f64; 3] = [0.6, 1.0, 1.7];
+const STRONG: f64 = 4.0;
 const GAPS: [f64; 3] = [0.4, 1.0, 2.5];
 /// A design with this many times the value of the TMD is not worth its runs.
 const WORTH: f64 = 4.0;
 /// A known design that breaks limits by more than these shares of them in all is too far from any that keeps them: a descent from there takes minutes.
 const FAR: f64 = 2.0;
-/// Descents: from the best of each of so many families of designs, those that came nearest.
+/// Descents: from the best of each of so many families of designs, those that came nearest, and half as many of families far from what is known.
 const DESCENTS: usize = 4;
 /// Most evaluations of each, so that the answer takes seconds on every machine and the same bytes on each: most need fewer than 60. Runs
 /// whose contacts lose energy take several times as long.
@@ -72,10 +73,13 @@ fn starts(study: &Study, search: &Search, (tmd, strokes): (&Candidate, &[f64])) 
     let near = |share: &f64| (0, [tmd.k2(), tmd.c2(), share * own, share * own]);
     let mut all: Vec<(usize, [f64; 4])> = NEAR.iter().map(near).collect();
     for (number, [k2, c2, d, c]) in KNOWN.into_iter().enumerate() {
-        for dashpot in DASHPOTS {
-            for (stroke, gap) in strokes.iter().flat_map(|stroke| GAPS.map(|gap| (stroke, gap))) {
+        for dashpot in DASHPOTS.into_iter().chain([STRONG]) {
+            for (i, stroke) in strokes.iter().enumerate() {
+                // Farther from what is known: families of their own.
+                let beside = if i > 0 || dashpot == STRONG { KNOWN.len() } else { 0 };
                 let c2 = dashpot * c2 * more * 2.0 * m2 * driven;
-                all.push((number + 1, [k2 * m2 * driven * driven, c2, gap * d * stroke, gap * c * stroke]));
+                let with = |gap: f64| [k2 * m2 * driven * driven, c2, gap * d * stroke, gap * c * stroke];
+                all.extend(GAPS.map(|gap| (number + 1 + beside, with(gap))));
             }
         }
     }
@@ -249,7 +253,10 @@ pub(super) fn best(
     let mut worth: Vec<&Start> = Vec::new();
     let within_reach = most.min(INFEASIBLE * (1.0 + FAR));
     for (_, start) in all.iter().filter(|(value, _)| *value < within_reach) {
-        if worth.len() < descents && worth.iter().all(|(known, _)| *known != start.0) {
+        let is_far = |family: usize| family > KNOWN.len();
+        let alike = worth.iter().filter(|(family, _)| is_far(*family) == is_far(start.0)).count();
+        let room = if is_far(start.0) { descents.div_ceil(2) } else { descents };
+        if alike < room && worth.iter().all(|(known, _)| *known != start.0) {
             worth.push(start);
         }
     }
