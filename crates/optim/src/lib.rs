@@ -23,7 +23,7 @@ pub use objective::motions::Known;
 pub use objective::needs::{Need, Needs};
 pub use objective::runs::Proceed;
 pub use objective::spec::{FrequencyBand, Goal, Objective, Part, Response, StiffnessRange, Stiffnesses};
-pub use objective::tmd::{over_natural, springs_for};
+pub use objective::tmd::{TUNINGS, over_natural, springs_for};
 pub use objective::unusable::Unusable;
 pub use retune_model::{Design, Parameter};
 pub use search::*;

@@ -55,6 +55,7 @@ pub use table2::{
     PaperStudy, SpringBounds, Table2, is_of_paper, is_papers_structure, read_rows, read_table2,
 };
 pub use units::typed;
+pub use window::SLOWEST;
 pub use words::{
     are, counted, design_cells, design_words, frequency, hertz_and_rpm, joined, over, rounded, short, visible,
 };

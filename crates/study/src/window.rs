@@ -14,8 +14,8 @@ pub const LEFT: f64 = 1e-3;
 const MATTERS: f64 = 1e-2;
 /// Periods of the force in a settled window.
 const PERIODS: f64 = 50.0;
-/// Periods of the slowest force of a band in it, at least.
-const SLOWEST: f64 = 5.0;
+/// Periods of the slowest force of a band that a window holds at least.
+pub const SLOWEST: f64 = 5.0;
 /// Periods of the force before it, at most.
 const MOST_PERIODS: f64 = 10_000.0;
 

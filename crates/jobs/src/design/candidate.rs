@@ -100,10 +100,10 @@ impl Candidate {
 
     /// The same with its largest values from rest on.
     pub fn with_start(self) -> Result<Self, Unusable> {
-        let Study { scene, solver, .. } = &self.study;
-        let goal = on_many_samples(&self.study);
-        let asked = (&self.steady, told(&goal.limits));
-        let from_rest = goal.needs_from_rest(scene, &solver.settings(), asked, &|| true)?;
+        let from_rest = over_band(&self.study, |goal, Study { scene, solver, .. }| {
+            let asked = (&self.steady, told(&goal.limits));
+            goal.needs_from_rest(scene, &solver.settings(), asked, &|| true)
+        })?;
         Ok(Self { from_rest: Some(from_rest), ..self })
     }
 
@@ -122,13 +122,14 @@ impl Candidate {
     /// The goal, in its unit, with k1 of the structure off by each of some shares of it, from the runs that the largest over all k1 is of; NaN where it has
     /// no bound. A larger one than was known becomes that largest.
     pub fn with_k1_off<const N: usize>(&mut self, shares: [f64; N]) -> [f64; N] {
-        let (quantity, settings) = (self.study.quantity(), self.study.solver.settings());
+        let quantity = self.study.quantity();
         shares.map(|share| {
-            let mut goal = on_many_samples(&self.study);
-            let k1 = Positive::new(self.study.scene.primary.stiffness.get() * (1.0 + share)).ok();
-            goal.objective.for_each_term(&mut |term| term.k1 = k1.map(|k1| Stiffnesses::Set(vec![k1])));
-            let needs = goal.own_needs(&self.study.scene, &settings, &|| true);
-            let Ok(need) = needs.map(|needs| needs.get(quantity)) else { return f64::NAN };
+            let mut study = self.study.clone();
+            let k1 = Positive::new(study.scene.primary.stiffness.get() * (1.0 + share)).ok();
+            if let Some(optimize) = &mut study.optimize {
+                optimize.objective.k1 = k1.map(|k1| Stiffnesses::Set(vec![k1]));
+            }
+            let Ok(need) = own_needs(&study).map(|needs| needs.get(quantity)) else { return f64::NAN };
             if need.value > self.goal {
                 self.goal = need.value;
                 self.steady.set(quantity, need);
@@ -205,13 +206,19 @@ fn on_many_samples(study: &Study) -> Goal {
     goal
 }
 
-/// The largest values over the band, and over the part of a wide one about the resonance, whose peak may lie between its samples.
+/// The largest values over what the objective looks at.
 fn own_needs(study: &Study) -> Result<PerMeasure<Need>, Unusable> {
-    let needs =
-        |study: &Study| on_many_samples(study).own_needs(&study.scene, &study.solver.settings(), &|| true);
-    let mut all = needs(study)?;
+    over_band(study, |goal, Study { scene, solver, .. }| goal.own_needs(scene, &solver.settings(), &|| true))
+}
+
+/// The largest values over the band, and over the part of a wide one about the resonance, whose peak may lie between its samples.
+fn over_band(
+    study: &Study,
+    look: impl Fn(&Goal, &Study) -> Result<PerMeasure<Need>, Unusable>,
+) -> Result<PerMeasure<Need>, Unusable> {
+    let mut all = look(&on_many_samples(study), study)?;
     if let Some(narrow) = about_resonance(study) {
-        let there = needs(&narrow)?;
+        let there = look(&on_many_samples(&narrow), &narrow)?;
         for measure in Measure::ALL {
             if there.get(measure).value > all.get(measure).value {
                 all.set(measure, there.get(measure));

@@ -118,6 +118,13 @@ fn tmd_of(study: &Study, [k2, c2]: [f64; 2]) -> Result<Candidate, Error> {
     Ok(Candidate::new(What::Tmd, &study)?)
 }
 
+/// The best TMD for some requirements.
+fn best_tmd(requirements: &Requirements) -> Result<Candidate, Error> {
+    let study = requirements.tmd()?;
+    let formulas = Formula::all(requirements, &study.scene.primary);
+    tmd_of(&study, tmd::best(&study, &formulas)?)
+}
+
 fn by(requirements: &Requirements, study: &Study, formula: Formula) -> Result<(Formula, Candidate), Error> {
     let mut tmd = tmd_of(study, [formula.k2, formula.c2])?;
     tmd.feasible &= requirements.k2_max.is_none_or(|most| formula.k2 <= most);
@@ -217,9 +224,7 @@ fn strokes(requirements: &Requirements, tmd: &Candidate) -> Result<Vec<f64>, Err
         return Ok(vec![own]);
     }
     let free = Requirements { limits: Limits::default(), k2_max: None, ..requirements.clone() };
-    let study = free.tmd()?;
-    let formulas = Formula::all(&free, &study.scene.primary);
-    let other = tmd_of(&study, tmd::best(&study, &formulas)?)?.value(Measure::Stroke);
+    let other = best_tmd(&free)?.value(Measure::Stroke);
     Ok(if own < SMALL * other { vec![own, other] } else { vec![own] })
 }
 
@@ -250,9 +255,7 @@ fn costs(
 ) -> Result<Vec<Cost>, Error> {
     let cost = |constraint: Constraint| {
         let free = requirements.without(constraint);
-        let study = free.tmd()?;
-        let formulas = Formula::all(&free, &study.scene.primary);
-        let free_tmd = tmd_of(&study, tmd::best(&study, &formulas)?)?;
+        let free_tmd = best_tmd(&free)?;
         let binds = |ssvi: &&Candidate| match constraint {
             Constraint::Of(limit) => ssvi.binding.iter().any(|(other, _)| *other == limit),
             Constraint::K2 => ssvi.k2() > 0.99 * requirements.allowed(constraint),
@@ -277,10 +280,7 @@ fn lightest(requirements: &Requirements, watch: &dyn Observer) -> Result<Option<
     let halvings = HALVINGS[usize::from(requirements.run().is_some())];
     let bar = watch.progress("lightest TMD that keeps the limits", 1 + halvings as u64);
     let keeps = |mass: f64| -> Result<bool, Error> {
-        let heavier = Requirements { mass, ..requirements.clone() };
-        let study = heavier.tmd()?;
-        let formulas = Formula::all(&heavier, &study.scene.primary);
-        let keeps = tmd_of(&study, tmd::best(&study, &formulas)?)?.feasible;
+        let keeps = best_tmd(&Requirements { mass, ..requirements.clone() })?.feasible;
         bar.inc(1);
         Ok(keeps)
     };

@@ -11,8 +11,8 @@ use retune_model::{
 };
 use retune_optim::{Band, Limit, Limits, over_natural, springs_for};
 use retune_solver::{Also, Ask, Settings, Window, extremes};
-use retune_study::Study;
 use retune_study::read::from_text;
+use retune_study::{SLOWEST, Study};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
@@ -123,13 +123,14 @@ impl Constraint {
 /// Periods of the natural frequency before a run of an SSVI NES counts, and all of them.
 const PASSED: f64 = 50.0;
 const PERIODS: f64 = 100.0;
-/// Periods of the slowest force before a run counts, and in its window, at least.
-const SLOW: f64 = 5.0;
 /// Stiffnesses of a structure whose k1 may be off; of a TMD in closed form the largest value is searched between them, too.
 const STIFFNESSES: usize = 17;
 /// Largest spring and dashpot of a TMD, in those of Den Hartog's: they hold the mass to the structure, so that its stroke is as small as may be.
 const STIFFEST: f64 = 200.0;
 const HELD: f64 = 1e6;
+/// A structure with less damping moves farther in proportion, at most so many times, and so far gaps may go.
+const HARDLY_DAMPED: f64 = 0.005;
+const MOST_ROOM: f64 = 5.0;
 /// Damping that an undamped structure counts as when gaps and tolerances are scaled.
 const LEAST_DAMPING: f64 = 0.01;
 
@@ -275,9 +276,9 @@ impl Requirements {
         let most = self.k2_max.unwrap_or(springs_for([1.0, 4.0], self.driven())[1] * k2);
         let axis = |from: f64, to: f64, scale: &str, points: u32| json!({ "from": from, "to": to, "points": points, "scale": scale });
         let stiffest = k2.min(most);
-        // One that is hardly damped moves farther, and needs more room before a damper stops it.
+        // Descents look at the whole range of a gap, so that it is no wider than it has to be.
         let zeta = self.c1 / (2.0 * self.m1 * self.natural_frequency());
-        let most_gap = reach * (0.5 * LEAST_DAMPING / zeta).clamp(1.0, 5.0);
+        let most_gap = reach * (HARDLY_DAMPED / zeta).clamp(1.0, MOST_ROOM);
         let mut limits = json!(self.limits);
         if !self.limits.is_empty() && self.run().is_none() {
             limits["from"] = json!(self.steady().from);
@@ -323,12 +324,12 @@ impl Requirements {
         objective
     }
 
-    /// The window of a damper with walls under a harmonic: as many periods of the structure before it as in it, and some of the slowest force.
+    /// The window of a damper with walls under a harmonic: as many periods of the structure before it as in it, and at least [`SLOWEST`] of the slowest
+    /// force.
     fn steady(&self) -> Window {
-        let slowest = self.driving.band().map_or(0.0, |[from, _]| TAU / from);
-        let [passed, length] = [PASSED, PERIODS - PASSED].map(|periods| periods * self.period());
-        let from = passed.max(SLOW * slowest);
-        Window { from, to: from + length.max(SLOW * slowest) }
+        let slowest = self.driving.band().map_or(0.0, |[from, _]| SLOWEST * TAU / from);
+        let [from, length] = [PASSED, PERIODS - PASSED].map(|periods| (periods * self.period()).max(slowest));
+        Window { from, to: from + length }
     }
 
     /// The natural period, s.

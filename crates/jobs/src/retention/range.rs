@@ -6,9 +6,10 @@
 
 use crate::Error;
 use rayon::prelude::*;
-use retune_model::{Bare, Coupled, Damper, Parameter, Positive, Scene, den_hartog};
+use retune_model::{Bare, Damper, Parameter, Positive, Scene, den_hartog};
 use retune_optim::{
-    Bounds, DesignObjective, Failures, FrequencyBand, Goal, Objective, Options, Response, Scaling, minimize,
+    Bounds, DesignObjective, Failures, FrequencyBand, Goal, Objective, Options, Response, Scaling, TUNINGS,
+    minimize,
 };
 use retune_solver::{Settings, Window};
 use retune_study::{Rule, Setting, Study};
@@ -19,8 +20,7 @@ const STEP: f64 = 1.02;
 /// Number of steps to either side: a range ends there at the latest, at 0.2 and at 5 times the nominal stiffness.
 const STEPS: usize = 81;
 
-/// The springs and dashpots of the grid for the best TMD, in those of Den Hartog's, and the share by which the other end must be better.
-const TUNINGS: [[f64; 2]; 2] = [[0.05, 5.0], [0.05, 300.0]];
+/// The share by which the end of a search from a valley must be better than that from Den Hartog's tuning.
 const GAIN: f64 = 1e-6;
 
 /// How closely a range is looked for.
@@ -135,42 +135,31 @@ fn limit(study: &Study, k1: f64) -> Result<f64, Error> {
 /// The TMD with the mass of a damper, k2 and c2 free, that has the least steady E1max over a band (rad/s), and this, J. A search begins at Den
 /// Hartog's tuning, and one in the deepest [valley](DesignObjective::valleys) of a grid: off its resonance a structure has its best TMD where it is driven.
 pub fn best_tmd(scene: &Scene, damper: Damper, band: [f64; 2]) -> Result<(Damper, f64), Error> {
-    let tuned = |x: &[f64]| {
-        let mut tmd = damper;
-        let set = Parameter::K2.set_damper(&mut tmd, x[0]);
-        set.and_then(|()| Parameter::C2.set_damper(&mut tmd, x[1])).map(|()| tmd)
-    };
-    let steady = |x: &[f64], _cutoff: f64| {
-        let worst = |tmd| Coupled::new(&scene.primary, &scene.forcing, &tmd).steady_e1_max(band).value;
-        tuned(x).map_or(f64::INFINITY, worst)
-    };
-    let start = den_hartog(&scene.primary, damper.mass.get());
-    let not_negative = Bounds { lower: Some(0.0), upper: None };
-    let options = Options {
-        tol_x: 1e-9,
-        tol_fun: 1e-9,
-        bounds: vec![not_negative; 2],
-        scaling: Scaling::Start,
-        ..Options::default()
-    };
-    let refuse = |source| Error::Search { source, failures: Failures::default() };
-    let from = |start: &[f64]| minimize(steady, start, options.clone(), |_| ControlFlow::Continue(()));
-    let mut found = from(&start).map_err(refuse)?;
-    let valley = over(scene, damper, band)?.valleys(TUNINGS, &[not_negative; 2]).into_iter().next();
-    let other = valley.and_then(|(_, x)| from(&x).ok());
-    found = other.filter(|other| other.value < (1.0 - GAIN) * found.value).unwrap_or(found);
-    Ok((tuned(&found.x).unwrap_or(damper), found.value))
-}
-
-/// The steady E1max over a band (rad/s), of the spring and the dashpot of a TMD with the mass of a damper.
-fn over(scene: &Scene, damper: Damper, band: [f64; 2]) -> Result<DesignObjective, Error> {
     let [from, to] = band.map(Positive::new);
     let omega = Some(FrequencyBand { from: from?, to: to?, samples: 2, relative: false });
     let objective = Objective { omega, response: Response::Steady, ..Objective::default() };
     // A steady motion has no window.
     let goal = Goal { objective, ..Window { from: 0.0, to: 1.0 }.into() };
+    let variables = vec![Parameter::K2, Parameter::C2];
     let tmd = Damper { contact: None, ..damper };
-    Ok(DesignObjective::new(*scene, tmd, vec![Parameter::K2, Parameter::C2], goal, Settings::default()))
+    let objective = DesignObjective::new(*scene, tmd, variables, goal, Settings::default());
+    let bounds = [Bounds { lower: Some(0.0), upper: None }; 2];
+    let options = Options {
+        tol_x: 1e-9,
+        tol_fun: 1e-9,
+        bounds: bounds.to_vec(),
+        scaling: Scaling::Start,
+        ..Options::default()
+    };
+    let value = |x: &[f64], cutoff: f64| objective.value(x, cutoff);
+    let from = |start: &[f64]| minimize(value, start, options.clone(), |_| ControlFlow::Continue(()));
+    let refuse = |source| Error::Search { source, failures: Failures::default() };
+    let found = from(&den_hartog(&scene.primary, damper.mass.get())).map_err(refuse)?;
+    let valley = objective.valleys(TUNINGS, &bounds).into_iter().next();
+    let other = valley.and_then(|(_, x)| from(&x).ok());
+    let found = other.filter(|other| other.value < (1.0 - GAIN) * found.value).unwrap_or(found);
+    let tuned = objective.damper(&found.x).map(|tmd| Damper { contact: damper.contact, ..tmd });
+    Ok((tuned.unwrap_or(damper), found.value))
 }
 
 #[cfg(test)]

@@ -252,8 +252,7 @@ fn regress_a_damper_that_is_sensitive_but_far_better_is_built() {
     assert!(10.0 * largest(&found, 2, "E1max") < largest(&found, 1, "E1max"), "{found}");
 }
 
-/// Samples of a wide band miss the resonance: the same damper was found to have 904 J over 1 to 20 Hz. Limits made the TMD's stroke small, and with it the
-/// gaps that were tried: 402 J over 1.8 to 2.2 Hz.
+/// Samples of a wide band miss the resonance, and limits make the TMD's stroke small, with which gaps are scaled.
 #[test]
 #[ignore = "slow: `just lab test-slow`"]
 fn regress_a_wide_band_and_a_soft_spring_hide_no_damper() {

@@ -161,7 +161,7 @@ fn contract_a_branch_ends_where_its_parameter_does() {
     assert!(said.contains("ends where the range ends") && !said.contains("was lost"), "{said}");
 }
 
-/// The points of a global search may all lie far from a narrow optimum: it ended at 17,000 m/s², beside 1217.
+/// The points of a global search may all lie far from a narrow optimum.
 #[test]
 fn regress_no_search_of_a_steady_objective_ends_far_above_the_best_tmd() {
     let objective =

@@ -6,6 +6,7 @@ use super::evaluation::Run;
 use super::limits::Limits;
 use super::runs::{FREE, Hooks, Observed, Proceed, Runs};
 use super::spec::{Goal, Objective, Response};
+use super::tmd::TUNINGS;
 use super::unusable::Unusable;
 use crate::search::fminsearch::{Bounds, Options, Scaling, minimize};
 use retune_model::{Damper, NonNegative, Parameter, PerMeasure, Scene, den_hartog};
@@ -44,8 +45,6 @@ const MOST: f64 = 1601.0;
 /// How often the search of the best linear damper is begun again at its end, where it gains this share each time.
 const RESTARTS: u32 = 4;
 const GAIN: f64 = 1e-4;
-/// Springs and dashpots of the grid whose deepest valley it begins in, too, in those of Den Hartog's.
-const TUNINGS: [[f64; 2]; 2] = [[0.05, 5.0], [0.05, 300.0]];
 /// The share of its critical damping below which a damper is told to have none.
 const UNDAMPED: f64 = 1e-9;
 

@@ -5,6 +5,8 @@ use crate::search::fminsearch::Bounds;
 use rayon::prelude::*;
 use retune_model::Parameter;
 
+/// The springs and dashpots of the grid for a best TMD that has no limits, in those of Den Hartog's.
+pub const TUNINGS: [[f64; 2]; 2] = [[0.05, 5.0], [0.05, 300.0]];
 /// Points of the grid along an axis that no band widens.
 const POINTS: usize = 16;
 /// The grid goes so many times beyond dampers that are tuned to the ends of a band.

@@ -80,7 +80,8 @@ class Run:
 
 def simulate(problem: _core.Core, x: ArrayLike | None, interval: float, changes: Mapping[str, float | str]) -> Run:
     motion, events, moments, maxima = _core.run(problem, x, scalar(interval, "interval"), [(key, scalar(value, key)) for key, value in changes.items()])
-    events["moment"], events["wall"] = (np.array(column, dtype=object) for column in zip(*moments)) if moments else (np.array([], dtype=object),) * 2
+    for i, name in enumerate(("moment", "wall")):
+        events[name] = np.array([words[i] for words in moments], dtype=object)
     return Run(Table(motion, UNITS), Table(events, UNITS), json.loads(maxima))
 
 

@@ -22,8 +22,7 @@ impl Hybrid<'_> {
         self.propagate_for(from, to, observer, None)
     }
 
-    /// The same, compiled for this observer, with another that is called through a table: each one that it is compiled for adds a twentieth to a
-    /// build.
+    /// The same, compiled for this observer, with another that is called through a table: each that it is compiled for makes builds longer.
     #[inline(never)]
     pub(crate) fn propagate_for(
         &mut self,
