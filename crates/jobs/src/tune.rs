@@ -15,6 +15,7 @@ mod refine;
 mod report;
 mod surf;
 mod tmd;
+mod turns;
 mod valley;
 
 pub(crate) use log::OPTIMUM;

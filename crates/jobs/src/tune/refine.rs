@@ -2,10 +2,12 @@
 
 use super::log::{self, LOG, STARTS};
 use super::objective::{Task, kept, searched};
+use super::turns::Turns;
 use crate::Error;
 use crate::summary::MadeBy;
+use rayon::prelude::*;
 use retune_model::Parameter;
-use retune_optim::{DesignObjective, Minimum, Row, minimize};
+use retune_optim::{DesignObjective, Minimum, Row, Stop, minimize};
 use retune_report::cells;
 use retune_report::table::{Cell, Table};
 use retune_store::{Directory, Journal};
@@ -100,26 +102,43 @@ fn table(study: &Study, refined: &Refined, run: &Run) -> Result<Table, Error> {
     Ok(table)
 }
 
-/// Refines every start. `tell` receives the number of the start, from 1, each row and its whole design; its error ends the run.
+/// Refines every start, several side by side. `tell` receives the number of the start, from 1, each row and its whole design, those of one start
+/// after those of another; its error ends the runs.
 pub(super) fn each(
     task: &Task,
     starts: &[Vec<f64>],
-    mut tell: impl FnMut(usize, &Row, &[f64]) -> Result<(), Error>,
+    tell: impl FnMut(usize, &Row, &[f64]) -> Result<(), Error> + Send,
 ) -> Result<Refined, Error> {
     let Task { study, search, journal, place, .. } = *task;
     let stage = format!("{place}fminsearch");
     let mut objective = searched(study, search, &search.variables);
-    let mut runs: Vec<Run> = Vec::new();
-    let mut winner = 0;
-    for (number, start) in starts.iter().enumerate() {
-        let tell = |row: &Row, design: &[f64]| tell(number + 1, row, design);
-        let run = run(&mut objective, search, start, (journal, &stage), tell)?;
-        let best = runs.get(winner).map_or(f64::INFINITY, |best: &Run| best.minimum.value);
-        if run.minimum.value < best {
-            winner = number;
-        }
-        runs.push(run);
-    }
+    let turns = Turns::new(tell);
+    let tell_of = |number: usize| {
+        let turns = &turns;
+        move |row: &Row, design: &[f64]| turns.tell(number, row, design)
+    };
+    let runs: Vec<Result<Run, Error>> = if objective.goal().follows_motions() {
+        // One after the other: each has the objective learn its own motions.
+        let run = |(number, start): (usize, &Vec<f64>)| {
+            let run = run_following(&mut objective, search, start, (journal, &stage), tell_of(number));
+            turns.end(number);
+            run
+        };
+        starts.iter().enumerate().map(run).take_while(|_| turns.go_on()).collect()
+    } else {
+        let run = |(number, start): (usize, &Vec<f64>)| {
+            let run = simplex(&objective, search, start, (journal, &stage), tell_of(number));
+            turns.end(number);
+            run
+        };
+        starts.par_iter().enumerate().map(run).collect()
+    };
+    turns.check()?;
+    let runs = runs.into_iter().collect::<Result<Vec<Run>, Error>>()?;
+    let smallest = |best: usize, other: usize| {
+        if runs[other].minimum.value < runs[best].minimum.value { other } else { best }
+    };
+    let winner = (0..runs.len()).reduce(smallest).unwrap_or(0);
     Ok(Refined { objective, runs, winner, starts: starts.len() })
 }
 
@@ -129,22 +148,22 @@ pub(super) fn columns(objective: &DesignObjective, design: &[f64]) -> Result<Vec
     Ok(Parameter::columns(objective.variables()).iter().map(|column| column.get(&damper)).collect())
 }
 
-/// One run. `tell` receives each row with its whole design; its error ends the run. Where the objective looks at all motions, those at the start are
-/// followed; if others have more at the end, the run goes on from there with these.
-fn run(
+/// A run whose objective looks at all motions: those at the start are followed; if others have more at the end, the run goes on from there with
+/// these. `tell` receives each row with its whole design and may end the run.
+fn run_following(
     objective: &mut DesignObjective,
     search: &Search,
     start: &[f64],
     (journal, stage): (&Journal, &str),
-    mut tell: impl FnMut(&Row, &[f64]) -> Result<(), Error>,
+    mut tell: impl FnMut(&Row, &[f64]) -> ControlFlow<()>,
 ) -> Result<Run, Error> {
-    if !objective.goal().follows_motions() {
-        return simplex(objective, search, start, (journal, stage), tell);
-    }
     objective.learn(start)?;
     let mut whole = simplex(objective, search, start, (journal, &format!("{stage} {start:?}")), &mut tell)?;
     for round in 1..=ROUNDS {
         let from = whole.minimum.clone();
+        if from.stop == Stop::Interrupted {
+            break;
+        }
         whole.minimum.value = objective.learn(&from.x)?.ranked;
         if round == ROUNDS || whole.minimum.value <= (1.0 + SAME) * from.value {
             break;
@@ -167,24 +186,30 @@ fn run(
     Ok(whole)
 }
 
+/// One run, as [`run_following`] without motions to follow.
 fn simplex(
     objective: &DesignObjective,
     search: &Search,
     start: &[f64],
     (journal, stage): (&Journal, &str),
-    mut tell: impl FnMut(&Row, &[f64]) -> Result<(), Error>,
+    mut tell: impl FnMut(&Row, &[f64]) -> ControlFlow<()>,
 ) -> Result<Run, Error> {
     let mut rows = Vec::new();
-    let mut told = Ok(());
+    let mut design = Ok(());
     let found = minimize(kept(objective, journal, stage, || ()), start, search.options.clone(), |row| {
         if journal.is_broken() {
             return ControlFlow::Break(());
         }
         rows.push(row.clone());
-        told = columns(objective, &row.best).and_then(|values| tell(row, &values));
-        if told.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        match columns(objective, &row.best) {
+            Ok(whole) => tell(row, &whole),
+            Err(error) => {
+                design = Err(error);
+                ControlFlow::Break(())
+            }
+        }
     });
-    told?;
+    design?;
     journal.check()?;
     let minimum = found.map_err(|source| Error::Search { source, failures: objective.failures() })?;
     Ok(Run { rows, minimum, descent: None })
