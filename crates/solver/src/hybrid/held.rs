@@ -17,9 +17,10 @@ pub(super) struct RigidWalls {
 
 impl RigidWalls {
     /// Those of a system, in steps of at most `longest` seconds; none if it has no rigid walls.
-    pub(super) fn of(system: &Coupled, longest: f64) -> Option<Self> {
+    #[inline(never)]
+    pub(super) fn of(system: &Coupled, longest: f64) -> Option<Box<Self>> {
         let restitution = system.restitution()?;
-        Some(Self { restitution, held: Flow::new(held(system), longest) })
+        Some(Box::new(Self { restitution, held: Flow::new(held(system), longest) }))
     }
 }
 

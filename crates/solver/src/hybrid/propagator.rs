@@ -94,10 +94,11 @@ pub(super) struct ReducedFlight {
 }
 
 impl ReducedFlight {
-    fn of(system: &Coupled, whole: &Flow<4>, longest: f64) -> Option<Self> {
+    #[inline(never)]
+    fn of(system: &Coupled, whole: &Flow<4>, longest: f64) -> Option<Box<Self>> {
         let flow = Reduced::of(whole, longest)?;
         let fourth = derivative_bounds_of::<_, 4, 5>(system, flow.flow.linear(), STROKE)[4];
-        Some(Self { flow, fourth })
+        Some(Box::new(Self { flow, fourth }))
     }
 }
 
@@ -120,9 +121,9 @@ impl<'a> Hybrid<'a> {
             system,
             collisions: Side::BOTH.map(|side| Collisions::new(system, side, &flow, rtol)),
             budget: Budget::new(flow.pace(), max_steps, Work::default(), [0.0; 2]),
-            reduced: ReducedFlight::of(system, &flow, longest).map(Box::new),
+            reduced: ReducedFlight::of(system, &flow, longest),
             samples: Pieces::of(force, &flow),
-            rigid: RigidWalls::of(system, longest).map(Box::new),
+            rigid: RigidWalls::of(system, longest),
             flow,
             contacts: Side::BOTH.map(|side| system.regularised_contact(side)),
             fourth: bounds[4],

@@ -67,8 +67,8 @@ impl<const N: usize> Flow<N> {
     pub fn new(linear: Linear<N>, longest: f64) -> Self {
         let step = longest.min(STEP / linear.rate);
         let unit = |i: usize| -> [f64; N] { std::array::from_fn(|j| f64::from(i == j)) };
-        let free = std::array::from_fn(|j| series(&linear, [0.0; 2], unit(j)));
-        let forced = [[1.0, 0.0], [0.0, 1.0]].map(|excitation| series(&linear, excitation, [0.0; N]));
+        let free = series(&linear, [[0.0; 2]; N], std::array::from_fn(unit));
+        let forced = series(&linear, [[1.0, 0.0], [0.0, 1.0]], [[0.0; N]; 2]);
         let mut coefficients = [[0.0; 2]; 4 * BLOCKS];
         coefficients[0] = [1.0, 0.0];
         for k in 1..coefficients.len() {
@@ -325,34 +325,43 @@ pub(super) fn applied<const N: usize>(columns: &[[f64; N]; N], y: &[f64; N]) -> 
 }
 
 /// Taylor series of the deviation from the origin: `c_{k+1} = (A c_k + b f_k) / (k + 1)`, `f_{k+1} = ω J f_k / (k + 1)`, with `J` without its
-/// second row where the force is linear in time.
-fn series<const N: usize>(
+/// second row where the force is linear in time. Several motions at once: each waits for its last term.
+fn series<const N: usize, const M: usize>(
     linear: &Linear<N>,
-    mut excitation: Excitation,
-    deviation: [f64; N],
-) -> Expansion<N> {
+    mut excitations: [Excitation; M],
+    mut deviations: [[f64; N]; M],
+) -> [Expansion<N>; M] {
     let Linear { columns, input, partner, frequency, returns, .. } = linear;
-    let mut coefficients = [deviation; 4 * BLOCKS];
-    for k in 1..coefficients.len() {
-        let (previous, scale) = (coefficients[k - 1], 1.0 / k as f64);
-        let mut next = [0.0; N];
-        for i in 0..N {
-            next[i] = input[i] * excitation[0];
-        }
-        if let Some(partner) = partner {
-            for i in 0..N {
-                next[i] += partner[i] * excitation[1];
+    let mut expansions = [const { Expansion([Polynomial([f64x4::ZERO; BLOCKS]); N]) }; M];
+    for k in 0..4 * BLOCKS {
+        if k > 0 {
+            let scale = 1.0 / k as f64;
+            for (excitation, deviation) in excitations.iter_mut().zip(&mut deviations) {
+                let mut next = [0.0; N];
+                for i in 0..N {
+                    next[i] = input[i] * excitation[0];
+                }
+                if let Some(partner) = partner {
+                    for i in 0..N {
+                        next[i] += partner[i] * excitation[1];
+                    }
+                }
+                for (column, &c) in columns.iter().zip(&*deviation) {
+                    for i in 0..N {
+                        next[i] += column[i] * c;
+                    }
+                }
+                *deviation = next.map(|c| c * scale);
+                *excitation = [-frequency * scale * excitation[1], returns * scale * excitation[0]];
             }
         }
-        for (column, c) in columns.iter().zip(previous) {
-            for i in 0..N {
-                next[i] += column[i] * c;
+        for (expansion, deviation) in expansions.iter_mut().zip(&deviations) {
+            for (polynomial, &c) in expansion.0.iter_mut().zip(deviation) {
+                polynomial.0[k / 4].as_mut_array()[k % 4] = c;
             }
         }
-        coefficients[k] = next.map(|c| c * scale);
-        excitation = [-frequency * scale * excitation[1], returns * scale * excitation[0]];
     }
-    Expansion(std::array::from_fn(|i| Polynomial::new(&coefficients.map(|c| c[i]))))
+    expansions
 }
 
 impl<const N: usize, const B: usize> Expansion<N, B> {
