@@ -42,9 +42,10 @@ pub struct Proof {
 /// The input is wrong, no motion is found, or it cannot be proven.
 pub fn prove(path: &Path, guess: &Guess) -> Result<Proof, Error> {
     let given = study::read(path)?;
+    let is_set = guess.settings.iter().any(|setting| setting.what() == Parameter::Omega.into());
     let omega = match guess.omega {
-        Some(omega) => Some(omega),
-        None => worst(path)?,
+        None if !is_set => worst(path)?,
+        given => given,
     };
     let study = given.with(&guess.settings)?.with(&omega.into_iter().collect::<Vec<_>>())?;
     let (periods, start) = match guess.from {

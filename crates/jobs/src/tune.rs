@@ -132,6 +132,7 @@ fn search_and_write(task: &Task, results: &Directory) -> Result<Optimum, Error> 
     let on_grid = on_grid.len();
     let mut refined = refine::refine(task, &starts, results)?;
     descent::finish(task, &mut refined)?;
+    let (measured_at, valleys) = descent::lowest_of_valleys(task, &mut refined)?;
     results.journal().check()?;
     let (certificate, passed_over) = choice::choose(study, &mut refined, watch)?;
     refine::write_winner(study, &refined, results)?;
@@ -146,7 +147,11 @@ fn search_and_write(task: &Task, results: &Directory) -> Result<Optimum, Error> 
     let scene = found.worst_run(design, refined.objective.goal());
     let response = retune_solver::simulate(&scene, study.window.window(), &study.solver.settings())?;
     let summary = Summary::new(study, scene, &response);
-    let valleys = valley::measure(task, &refined.best().minimum.x);
+    let valleys = if measured_at == refined.best().minimum.x {
+        valleys
+    } else {
+        valley::measure(task, &refined.best().minimum.x).valleys
+    };
     results.journal().check()?;
     let searched =
         Searched { surf: surf.as_ref(), explored: explored.as_ref(), basins, passed_over, valleys };

@@ -16,6 +16,7 @@ use retune_store::UNFINISHED;
 use retune_store::identity::{Identity, VERSION, sha256};
 use retune_store::manifest::{self, Manifest};
 use retune_study::counted;
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// Checks a directory of results, and those in it, and reports of each file whether it holds. Of each table `sample` rows are run
@@ -59,8 +60,17 @@ static KINDS: [&Kind; 10] = [
 /// Those of the comparison of methods, whose files have names that say little: only where their manifest names them.
 static COMPARISONS: [&Kind; 2] = [&methods::ACCURACY, &methods::STABILITY];
 
+/// Those that make searches, each in a directory below, whose manifest names their command.
+static SEARCHING: [&Kind; 6] =
+    [&table2::KIND, &losses::KIND, &retention::KIND, &fronts::KIND, &paper::KIND, &design::KIND];
+
 /// Checks the results in one directory: each file against the manifest, then the contents of each against a computation.
 fn check(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
+    if !is_result(place) {
+        let (names, links) = names(place)?;
+        let all = [names, links].concat().join(", ");
+        return report.unchecked(&format!("{all}: no manifest.json beside it says what made this"));
+    }
     let there = compare_files(place, report)?;
     let known = known(place, &there);
     let is_input = |content: &Content| matches!(content, Content::Input);
@@ -160,6 +170,15 @@ fn compare_with_manifest(place: &Path, there: &[String], report: &mut Report<'_>
         Err(error) => return report.fail(manifest::NAME, &error.to_string()),
     };
     let mut problems = Vec::new();
+    for (name, study) in &manifest.parts {
+        match Manifest::read(&place.join(name)) {
+            Ok(Some(part)) if part.study_sha256 == *study => {}
+            Ok(Some(_)) => {
+                problems.push(format!("{name} has the results of another study than it was made with"))
+            }
+            _ => problems.push(format!("{name} is missing, or its manifest.json")),
+        }
+    }
     for (name, expected) in &manifest.files {
         match manifest::file_sha256(&place.join(name)) {
             Ok(found) if found == *expected => {}
@@ -172,7 +191,8 @@ fn compare_with_manifest(place: &Path, there: &[String], report: &mut Report<'_>
         Some(input) if sha256(text(place, input).unwrap_or_default().as_bytes()) != manifest.study_sha256 => {
             problems.push(format!("{input} is not the study that made these results"));
         }
-        _ => {}
+        Some(input) => problems.extend(statements(place, input, &manifest)),
+        None => {}
     }
     let files = counted(manifest.files.len() as u64, "file");
     let made = if manifest.files.len() == 1 { "it was" } else { "they were" };
@@ -199,6 +219,31 @@ fn compare_with_manifest(place: &Path, there: &[String], report: &mut Report<'_>
         )?;
     }
     Ok(())
+}
+
+/// What a manifest says of the results beside their files and its input, and is not so.
+fn statements(place: &Path, input: &str, manifest: &Manifest) -> Vec<String> {
+    let mut problems = Vec::new();
+    let command = &manifest.made_by.command;
+    let makes = |kind: &Kind| manifest.files.keys().any(|name| name != input && kind.makes(name));
+    let has_made = |kind: &Kind| {
+        let is_search = SEARCHING.iter().any(|other| other.command == kind.command) && makes(&tune::KIND);
+        kind.command == command && (makes(kind) || is_search)
+    };
+    if !KINDS.iter().chain(&COMPARISONS).any(|kind| has_made(kind)) {
+        problems.push(format!("{}, made_by.command: `{command}` makes no such files", manifest::NAME));
+    }
+    let read: Value =
+        text(place, input).ok().and_then(|text| serde_json::from_str(&text).ok()).unwrap_or_default();
+    let dampers = read["dampers"].as_array();
+    let studies: Vec<&Value> =
+        dampers.map_or_else(|| vec![&read], |all| all.iter().map(|damper| &damper["study"]).collect());
+    let first = studies.first().map_or(&Value::Null, |study| &study["solver"]);
+    let common = if studies.iter().all(|study| study["solver"] == *first) { first } else { &Value::Null };
+    if serde_json::json!(manifest.solver) != *common {
+        problems.push(format!("{}, solver: {input} has another", manifest::NAME));
+    }
+    problems
 }
 
 /// Whether a file is not a result: a lock, or a hidden file of an editor.

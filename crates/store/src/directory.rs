@@ -195,7 +195,11 @@ impl Directory {
         let mut files = self.new_files()?;
         let mut earlier = BTreeMap::new();
         let mut made_by = self.made_by();
-        let mut parts = self.parts();
+        let mut parts = BTreeMap::new();
+        for name in self.parts() {
+            let made = Manifest::read(&self.path.join(&name))?;
+            parts.extend(made.map(|manifest| (name, manifest.study_sha256)));
+        }
         if let Some(old) = Manifest::read(&self.path)? {
             // Files that this run does not replace stay listed: as part of the results if they are of the same work, else as earlier.
             let same = old.identity() == self.identity;
@@ -207,7 +211,9 @@ impl Directory {
                 }
             }
             if same && self.extent != Extent::Whole {
-                parts.extend(old.parts); // those of the files that stay
+                old.parts.into_iter().for_each(|(name, study)| {
+                    parts.entry(name).or_insert(study); // those of the files that stay
+                });
             }
             // The same study from another place is still that of the first.
             if same {
@@ -294,7 +300,7 @@ impl Directory {
             std::fs::remove_file(self.path.join(name))?;
         }
         if let Some(old) = old.filter(|_| self.extent == Extent::Whole) {
-            self.remove_parts(&old.parts, false)?;
+            self.remove_parts(old.parts.keys(), false)?;
         }
         self.remove_parts(self.journal.parts(), true)?;
         self.remove_parts(&self.thrown_away, true)?;
@@ -306,9 +312,13 @@ impl Directory {
     }
 
     /// Removes Retune's files from directories below that are no longer part of the work.
-    fn remove_parts(&self, earlier: &BTreeSet<String>, with_unfinished: bool) -> std::io::Result<()> {
+    fn remove_parts<'a>(
+        &self,
+        earlier: impl IntoIterator<Item = &'a String>,
+        with_unfinished: bool,
+    ) -> std::io::Result<()> {
         let now = self.parts();
-        for name in earlier.difference(&now) {
+        for name in earlier.into_iter().filter(|name| !now.contains(*name)) {
             // A link that was put there since the manifest was read leads to what is not ours.
             let Ok(part) = plain::below(&self.path, name) else { continue };
             unfinished::remove_results(&part, with_unfinished)?;

@@ -7,7 +7,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
 use std::path::{Component, Path};
 
@@ -35,9 +35,9 @@ pub struct Manifest {
     /// Files of an earlier study that are still beside them, with their SHA-256.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub earlier: BTreeMap<String, String>,
-    /// Directories below with the results of its searches, each with a manifest of its own.
-    #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
-    pub parts: BTreeSet<String>,
+    /// Directories below with the results of its searches, each with a manifest of its own, and the SHA-256 of the study that it is of.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub parts: BTreeMap<String, String>,
 }
 
 /// The owner of results: a study file remains the same study when it is edited; a file of the same name elsewhere is another one.
@@ -73,7 +73,7 @@ impl Manifest {
                 return Err(refuse(field, &format!("`{name}` is not the name of a file in this directory")));
             }
         }
-        for name in &self.parts {
+        for name in self.parts.keys() {
             plain::below(place, name).map_err(|error| refuse("parts", &error.to_string()))?;
         }
         Ok(())

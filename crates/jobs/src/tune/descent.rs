@@ -1,9 +1,10 @@
 //! The finish of every search: descents by derivatives from where its refinements end, and from the best TMD.
 
 use super::log::worth;
-use super::objective::Task;
-use super::refine::{Descended, Refined, Run};
+use super::objective::{Task, searched};
+use super::refine::{Descended, Refined, Run, quietly};
 use super::tmd::{best_steady, tmd};
+use super::valley::{Measured, Valley, measure};
 use crate::Error;
 use rayon::prelude::*;
 use retune_optim::{Counts, DesignObjective, Foot, INFEASIBLE, Minimum, Point, Procedure, Row, Stop};
@@ -15,6 +16,13 @@ use std::cell::OnceCell;
 const GAIN: f64 = 1e-5;
 /// The best TMD of a steady objective takes the place of an end that is above it by this share.
 const BETTER: f64 = 1e-4;
+
+/// Where a run from the design that the study gives begins.
+const DAMPER: &str = "the damper of the study";
+/// Where a run from what is found about the best end begins.
+const BESIDE: &str = "a lower place beside the best end";
+/// Most runs from there, one after the other.
+const ROUNDS: usize = 3;
 
 /// Goes down from the end of every refinement, and from the best TMD of a damper with walls: in a kink, where several peaks are equally high or a
 /// limit is reached, a simplex stops before it arrives. An end that is better takes the place of the refinement's.
@@ -37,12 +45,7 @@ pub(super) fn finish(task: &Task, refined: &mut Refined) -> Result<(), Error> {
     journal.check()?;
     let mut feet = feet.into_iter();
     for (run, foot) in runs.iter_mut().zip(&mut feet) {
-        let Some(Foot { end, counts, from }) = foot else { continue };
-        let least = if from < INFEASIBLE { (1.0 - GAIN) * run.minimum.value } else { run.minimum.value };
-        if end.value < least {
-            (run.minimum.x, run.minimum.value) = (end.x, end.value);
-            run.descent = Some(Descended { from, evaluations: counts.evaluations });
-        }
+        foot.into_iter().for_each(|foot| take(run, foot));
     }
     let mut of_tmd = tmd.zip(feet.flatten().next());
     if of_tmd.is_none() {
@@ -57,17 +60,16 @@ pub(super) fn finish(task: &Task, refined: &mut Refined) -> Result<(), Error> {
         let scaling = search.options.scaling;
         let minimum = Minimum { x, value, iterations: 0, func_count: 1, stop: Stop::Converged, scaling };
         let descent = Some(Descended { from, evaluations: counts.evaluations });
-        runs.push(Run { rows: vec![row], minimum, descent });
+        refined.push("the best TMD", Run { rows: vec![row], minimum, descent });
     }
+    own(task, refined)?;
     for (number, run) in refined.runs.iter().enumerate() {
         if run.minimum.value < refined.runs[refined.winner].minimum.value {
             refined.winner = number;
         }
         let Some(Descended { from, evaluations }) = run.descent else { continue };
-        let begin = match number {
-            number if number < refined.starts => format!("the end of start {}", number + 1),
-            _ => "the best TMD".to_owned(),
-        };
+        let begin =
+            refined.beyond(number).map_or_else(|| format!("the end of start {}", number + 1), str::to_owned);
         let [from, to] = [from, run.minimum.value].map(|value| worth(value, study.quantity()));
         watch.log(&format!(
             "descent from {begin}: {from} to {to} in {}",
@@ -75,6 +77,70 @@ pub(super) fn finish(task: &Task, refined: &mut Refined) -> Result<(), Error> {
         ))?;
     }
     Ok(())
+}
+
+/// Where the damper of the study is better than all ends, the search goes on from it: no answer is above what was given.
+fn own(task: &Task, refined: &mut Refined) -> Result<(), Error> {
+    let Task { study, search, watch, .. } = *task;
+    let design: Vec<f64> = search.variables.iter().map(|variable| variable.get(&search.damper)).collect();
+    let inside = design.iter().zip(&search.options.bounds).all(|(value, bounds)| bounds.contain(*value));
+    let least = (1.0 - GAIN) * refined.best().minimum.value;
+    let mut objective = searched(study, search, &search.variables);
+    let follows = objective.goal().follows_motions();
+    let mut value = || match follows {
+        true => objective.learn(&design).map_or(f64::INFINITY, |found| found.ranked),
+        false => objective.value(&design, least),
+    };
+    if !inside || value() >= least {
+        return Ok(());
+    }
+    watch.log("the damper of the study is better than the ends of all starts: the search goes on from it")?;
+    go_on(task, refined, DAMPER, &design)
+}
+
+/// Looks about the end that is best, one parameter at a time: where it is lower, the search goes on from there. Gives the place that was looked about
+/// last, and its valleys.
+pub(super) fn lowest_of_valleys(
+    task: &Task,
+    refined: &mut Refined,
+) -> Result<(Vec<f64>, Vec<Valley>), Error> {
+    let mut rounds = 0..ROUNDS;
+    loop {
+        let design = refined.best().minimum.x.clone();
+        let Measured { valleys, lower } = measure(task, &design);
+        let Some(lower) = lower.filter(|_| rounds.next().is_some()) else { return Ok((design, valleys)) };
+        go_on(task, refined, BESIDE, &lower)?;
+        if refined.best().minimum.x == design {
+            return Ok((design, valleys));
+        }
+    }
+}
+
+/// One more run from a design, and a descent from its end.
+pub(super) fn go_on(
+    task: &Task,
+    refined: &mut Refined,
+    from: &'static str,
+    design: &[f64],
+) -> Result<(), Error> {
+    let Task { search, journal, place, .. } = *task;
+    let mut run = quietly(task, &mut refined.objective, design)?;
+    let stage = format!("{place}fminsearch descent");
+    if refined.objective.goal().has_pieces() {
+        let foot = descend(&refined.objective, search, &run.minimum.x, journal, &stage);
+        take(&mut run, foot);
+    }
+    refined.push(from, run);
+    Ok(())
+}
+
+/// The end of a descent takes the place of that of its run where it is lower.
+fn take(run: &mut Run, Foot { end, counts, from }: Foot) {
+    let least = if from < INFEASIBLE { (1.0 - GAIN) * run.minimum.value } else { run.minimum.value };
+    if end.value < least {
+        (run.minimum.x, run.minimum.value) = (end.x, end.value);
+        run.descent = Some(Descended { from, evaluations: counts.evaluations });
+    }
 }
 
 /// [`DesignObjective::descend`] within the bounds of a search; the journal keeps what it comes to under the name of a stage.

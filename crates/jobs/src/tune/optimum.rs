@@ -52,9 +52,12 @@ pub struct Optimum {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) global: Option<Basins>,
     refine: Refinement,
-    /// Number of refinements; one run more begins at the best TMD.
+    /// Number of refinements that begin at the starts.
     #[serde(skip)]
     starts: usize,
+    /// Where that which found it began, if not at one of the starts.
+    #[serde(skip)]
+    beyond: Option<&'static str>,
     pub(crate) failures: FailureNote,
     /// Designs with smaller values that other motions make much worse, if one without was as good.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -158,6 +161,7 @@ impl Optimum {
                 runs: refined.runs.iter().map(|run| RunNote::new(run, quantity, over)).collect(),
             },
             starts: refined.starts,
+            beyond: refined.beyond(refined.winner),
             failures: FailureNote::new(&[
                 surf.map(|surf| &surf.failures),
                 explored.map(|explored| &explored.failures),

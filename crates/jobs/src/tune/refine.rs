@@ -25,8 +25,10 @@ pub struct Refined {
     /// A run for each start, in the order of the starts.
     pub runs: Vec<Run>,
     pub winner: usize,
-    /// Number of runs that begin at the starts; one more may begin at the best TMD.
+    /// Number of runs that begin at the starts.
     pub starts: usize,
+    /// Where the runs after these begin.
+    pub beyond: Vec<&'static str>,
 }
 
 pub struct Run {
@@ -45,6 +47,20 @@ pub struct Descended {
 }
 
 impl Refined {
+    /// Where a run begins, if not at one of the starts.
+    pub fn beyond(&self, run: usize) -> Option<&'static str> {
+        self.beyond.get(run.checked_sub(self.starts)?).copied()
+    }
+
+    /// Adds a run from elsewhere.
+    pub(super) fn push(&mut self, from: &'static str, run: Run) {
+        if run.minimum.value < self.best().minimum.value {
+            self.winner = self.runs.len();
+        }
+        self.runs.push(run);
+        self.beyond.push(from);
+    }
+
     /// The run that found the smallest value, of equal ones the first; or that which was chosen for its safety.
     pub fn best(&self) -> &Run {
         &self.runs[self.winner]
@@ -139,7 +155,7 @@ pub(super) fn each(
         if runs[other].minimum.value < runs[best].minimum.value { other } else { best }
     };
     let winner = (0..runs.len()).reduce(smallest).unwrap_or(0);
-    Ok(Refined { objective, runs, winner, starts: starts.len() })
+    Ok(Refined { objective, runs, winner, starts: starts.len(), beyond: Vec::new() })
 }
 
 /// A whole design, in the order of the columns of its tables.
@@ -184,6 +200,17 @@ fn run_following(
         };
     }
     Ok(whole)
+}
+
+/// A run from a design, which nobody hears of.
+pub(super) fn quietly(task: &Task, objective: &mut DesignObjective, start: &[f64]) -> Result<Run, Error> {
+    let stage = format!("{}fminsearch", task.place);
+    let tell = |_: &Row, _: &[f64]| ControlFlow::Continue(());
+    if objective.goal().follows_motions() {
+        run_following(objective, task.search, start, (task.journal, &stage), tell)
+    } else {
+        simplex(objective, task.search, start, (task.journal, &stage), tell)
+    }
 }
 
 /// One run, as [`run_following`] without motions to follow.

@@ -6,6 +6,7 @@ use retune_model::Parameter;
 use retune_optim::Bounds;
 use retune_study::{rounded, short};
 use serde::Serialize;
+use std::sync::{Mutex, PoisonError};
 
 /// The share by which the value may grow.
 const ALLOWED: f64 = 1e-3;
@@ -29,19 +30,33 @@ pub(crate) struct Valley {
     own: f64,
 }
 
+/// The valleys about a design, and the lowest design met there, if it is lower by more than the share by which they may rise.
+pub(super) struct Measured {
+    pub valleys: Vec<Valley>,
+    pub lower: Option<Vec<f64>>,
+}
+
 /// Measures it for each varied parameter of a design.
-pub(super) fn measure(task: &Task, design: &[f64]) -> Vec<Valley> {
+pub(super) fn measure(task: &Task, design: &[f64]) -> Measured {
     let Task { study, search, journal, .. } = *task;
     let mut objective = searched(study, search, &search.variables);
     if objective.goal().follows_motions() && objective.learn(design).is_err() {
-        return Vec::new();
+        return Measured { valleys: Vec::new(), lower: None };
     }
     let value = kept(&objective, journal, "valley", || ());
-    let most = (1.0 + ALLOWED) * value(design, f64::INFINITY);
+    let own = value(design, f64::INFINITY);
+    let most = (1.0 + ALLOWED) * own;
+    let lowest = Mutex::new(((1.0 - ALLOWED) * own, None));
     let does = |i: usize, x: f64| {
         let mut other = design.to_vec();
         other[i] = x;
-        value(&other, most) <= most
+        let found = value(&other, most);
+        let lowest = &mut *lowest.lock().unwrap_or_else(PoisonError::into_inner);
+        // Of equal ones the first in order, whichever thread came first.
+        if found < lowest.0 || found == lowest.0 && lowest.1.as_ref().is_some_and(|known| other < *known) {
+            *lowest = (found, Some(other));
+        }
+        found <= most
     };
     let reach = |(i, outwards): (usize, f64)| {
         let (own, Bounds { lower, upper }) =
@@ -76,7 +91,8 @@ pub(super) fn measure(task: &Task, design: &[f64]) -> Vec<Valley> {
         let [(from, _), (to, open)] = [found[2 * i], found[2 * i + 1]];
         Valley { variable: *variable, from, to, open, own: design[i] }
     };
-    search.variables.iter().enumerate().map(valley).collect()
+    let valleys = search.variables.iter().enumerate().map(valley).collect();
+    Measured { valleys, lower: lowest.into_inner().unwrap_or_else(PoisonError::into_inner).1 }
 }
 
 impl Valley {

@@ -53,7 +53,8 @@ impl<'a> Report<'a> {
     }
 
     pub fn unchecked(&mut self, words: &str) -> Result<(), Error> {
-        self.unchecked.push(format!("{}{words}", self.place));
+        let below = self.place.strip_suffix('/').map_or_else(String::new, |place| format!("{place}: "));
+        self.unchecked.push(format!("{below}{words}"));
         self.found("", None, words);
         self.watch.result(&format!("  cannot be checked: {words}"))
     }

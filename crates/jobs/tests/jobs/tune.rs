@@ -254,3 +254,56 @@ fn contract_a_coarse_grid_leads_to_the_starts_of_an_exact_one() {
     assert!(desk.read("out/surf-k2-c2.svg").contains("Grey: none below 300 J."));
     verified::holds(&desk, "out", 7);
 }
+
+/// Retune once ended at 4.5 J where the damper of the study itself, within all bounds, had 0.7: its grid was elsewhere.
+#[test]
+fn contract_no_answer_is_above_the_damper_of_the_study() {
+    let desk = Desk::with(&tiny());
+    search(&desk, "study.json", "best");
+    let best = desk.read_json("best/optimum.json");
+    let mut study = tiny();
+    for name in ["k2", "c2", "D", "C"] {
+        study["scene"]["damper"][name] = best[name].clone();
+        study["optimize"]["surf"][name] = json!({ "from": 0.5, "to": 0.6, "points": 2 });
+    }
+    study["optimize"]["surf"]["k2"] = json!({ "from": 900, "to": 990, "points": 2 });
+    study["optimize"]["surf"]["c2"] = json!({ "from": 900, "to": 990, "points": 2 });
+    study["optimize"]["refine"]["MaxFunEvals"] = json!(6);
+    study["optimize"]["objective"]["quantity"] = json!("x1max");
+    desk.write_json("far.json", &study);
+    let record = Record::default();
+    good(tune(&request(&desk, "far.json", "far"), &record));
+    let far = desk.read_json("far/optimum.json");
+    let [found, own] = ["x1max", "x1max_study"].map(|name| number(&far, &format!("/{name}")));
+    assert!(found <= own, "{found} {own}");
+    let words = "the damper of the study is better than the ends of all starts: the search goes on from it";
+    assert!(record.all().contains(words), "{}", record.all());
+}
+
+/// Once "flat" was said of the gap D from 0 on, where the value at 0 was lower by 39 %: what is looked at about the answer counts.
+#[test]
+fn contract_a_lower_place_beside_the_answer_is_taken() {
+    let mut study = tiny();
+    study["scene"]["damper"]["contact"]["R"] = json!(0.05);
+    study["scene"] = json!({
+        "primary": { "m1": "40 t", "c1": "5 kN·s/m", "k1": "6.3 MN/m" },
+        "forcing": { "P": 280, "omega": "2 Hz" },
+        "damper": {
+            "m2": 800, "k2": 80000, "c2": 3800, "D": 0.05, "C": 0.1,
+            "contact": study["scene"]["damper"]["contact"]
+        }
+    });
+    study["window"] = json!({ "t0": 10, "T": 20 });
+    study["optimize"] = json!({
+        "vary": ["D"],
+        "bounds": { "D": [0, 0.05] },
+        "objective": { "omega": { "from": 12, "to": 13, "samples": 2 } }
+    });
+    let desk = Desk::with(&study);
+    let record = Record::default();
+    good(tune(&request(&desk, "study.json", "out"), &record));
+    assert!(record.all().contains("\na lower place beside the best end"), "{}", record.all());
+    let answer = desk.read_json("out/optimum.json");
+    let [found, gap, own] = ["E1max", "D", "E1max_study"].map(|name| number(&answer, &format!("/{name}")));
+    assert!(found < 0.45 * own && gap < 0.001, "{found} {gap} {own}");
+}

@@ -11,6 +11,7 @@ use retune_testkit::desk::{Desk, tiny};
 use retune_testkit::observers::{good, refused};
 use retune_testkit::verified::{self, End};
 use serde_json::json;
+use std::path::Path;
 
 /// The results of the tiny study in `out`.
 fn desk() -> Desk {
@@ -164,7 +165,54 @@ fn contract_a_directory_without_a_manifest_below_is_named() {
     let desk = desk();
     desk.write("out/below/surf.csv", "k2,c2,D,C,E1max\n");
     let End::Unchecked(problem) = look(&desk, "out", 3, 0.0).1 else { panic!("it is checked") };
-    assert!(problem.starts_with("below/there is no manifest.json"), "{problem}");
+    assert_eq!(problem, "below: surf.csv: no manifest.json beside it says what made this");
+}
+
+/// Searches in directories below: each is there, and the one that its results were made of.
+#[test]
+fn contract_a_part_that_is_missing_or_another_is_found() {
+    let desk = verified::desk();
+    let mut stiffer = desk.read_json("study.json");
+    stiffer["scene"]["primary"]["k1"] = json!(4e4);
+    desk.write_json("stiffer.json", &stiffer);
+    let row = |study: &str| json!({ "damper": study, "study": study, "reference": { "k2": 215, "c2": 232, "D": 0.06, "C": 0.36 } });
+    desk.write_json("table2.json", &json!({ "rows": [row("study.json"), row("stiffer.json")] }));
+    good(table2(&request(&desk, "table2.json", "out"), &Silent));
+    assert_eq!(look(&desk, "out", 1, 0.0).1, End::Holds);
+    let names = desk.names("out");
+    let parts: Vec<&String> = names.iter().filter(|name| desk.path("out").join(name).is_dir()).collect();
+    let [one, .., other] = parts.as_slice() else { panic!("no two parts: {names:?}") };
+    let [one, other] = [one, other].map(|name| desk.path("out").join(name));
+    let name = |path: &Path| path.file_name().expect("a name").to_string_lossy().into_owned();
+    std::fs::rename(&one, desk.path("aside")).expect("moved");
+    let missing = format!("does not hold: {} is missing, or its manifest.json", name(&one));
+    assert_eq!(look(&desk, "out", 1, 0.0).1, End::Not(missing));
+    std::fs::rename(&other, &one).expect("moved");
+    std::fs::rename(desk.path("aside"), &other).expect("moved");
+    let End::Not(problem) = look(&desk, "out", 1, 0.0).1 else { panic!("it holds") };
+    for part in [&one, &other] {
+        let words = format!("{} has the results of another study than it was made with", name(part));
+        assert!(problem.contains(&words), "{problem}");
+    }
+}
+
+/// What a manifest says of how results were made is so.
+#[test]
+fn contract_a_manifest_with_another_solver_or_command_does_not_hold() {
+    let desk = desk();
+    let manifest = desk.read("out/manifest.json");
+    for (field, other, words) in [
+        ("\"method\": \"hybrid\"", "\"method\": \"ode45\"", "manifest.json, solver: study.json has another"),
+        (
+            "\"command\": \"optimize\"",
+            "\"command\": \"sweep\"",
+            "manifest.json, made_by.command: `sweep` makes no such files",
+        ),
+    ] {
+        assert!(manifest.contains(field), "{manifest}");
+        desk.write("out/manifest.json", manifest.replace(field, other));
+        assert_eq!(look(&desk, "out", 1, 0.0).1, End::Not(format!("does not hold: {words}")));
+    }
 }
 
 /// The tables of a search have the penalty of a design that breaks its limits; `optimum.json` has its energy. A table of designs

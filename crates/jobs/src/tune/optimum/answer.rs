@@ -61,7 +61,7 @@ impl Optimum {
             self.refine.tol_x,
             self.refine.tol_x_mode,
         );
-        let begun = if winner > self.starts { "the best TMD".to_owned() } else { simplex };
+        let begun = self.beyond.map_or(simplex, str::to_owned);
         let descent = descent.map_or_else(String::new, |DescentNote { from, evaluations }| {
             let from = if from.value.is_nan() { "outside the limits".to_owned() } else { from.words() };
             format!("; then a descent by derivatives from {from}, {}", counted(evaluations, "evaluation"))

@@ -27,7 +27,7 @@ pub fn section(findings: &Findings, results: &Directory) -> Section {
                 "The design was found by refinement " (findings.refined.winner + 1) " of " (findings.refined.starts) ", which "
                 (stop_words(winner.stop)) " after " (counted(winner.iterations, "iteration")) " and "
                 (counted(winner.func_count, "evaluation"))
-            } @else { "The design was found from the best TMD" }
+            } @else { "The design was found from " (findings.refined.beyond(findings.refined.winner).unwrap_or_default()) }
             @if let Some(Descended { from, evaluations }) = findings.refined.best().descent {
                 ", by a descent with derivatives from " (worth(from, findings.quantity())) " in " (counted(evaluations, "evaluation"))
             }

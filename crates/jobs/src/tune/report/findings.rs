@@ -68,8 +68,8 @@ impl Findings<'_> {
 
     /// Where a refinement began.
     pub fn origin(&self, run: usize) -> &'static str {
-        if run >= self.refined.starts {
-            return "best TMD";
+        if let Some(from) = self.refined.beyond(run) {
+            return from.trim_start_matches("the ");
         }
         let explored = self.explored.map_or(0, |explored| explored.basins.len().min(self.search.starts));
         let ends = [self.on_grid, explored, self.search.given.len()];
