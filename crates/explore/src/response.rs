@@ -258,10 +258,5 @@ fn largest(study: &Study, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<Option
         return Err(Stale);
     }
     let Ok(needs) = found else { return Ok(None) };
-    // The energy is that of the objective, in its window; all else is of the whole run.
-    let of = |measure| match measure {
-        Measure::Energy => needs.own.get(measure).value,
-        _ => needs.whole.get(measure).value,
-    };
-    Ok(Some(crate::motion::largest(of).into()))
+    Ok(Some(crate::motion::largest(|measure| needs.whole.get(measure).value).into()))
 }

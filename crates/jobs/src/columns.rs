@@ -10,7 +10,7 @@ pub const STATE: [(&str, &str); 4] = [("x1", "m"), ("v1", "m/s"), ("x2", "m"), (
 /// `E1max_none`; else without a unit.
 pub fn column(name: &str) -> Column {
     let parameters = Parameter::ALL.map(|parameter| (parameter.symbol(), parameter.unit()));
-    let measures = Measure::OF_RUN.map(|measure| (measure.name(), measure.unit()));
+    let measures = Measure::every().map(|measure| (measure.name(), measure.unit()));
     let is_it = |(known, _): &(&str, &'static str)| {
         name.strip_prefix(known).is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
     };
@@ -60,9 +60,10 @@ mod tests {
             "decay_time",
             "base_acceleration",
             "place",
+            "x1rms_none",
         ];
         let table = table(&names);
         let units: Vec<&str> = table.columns.iter().map(|column| &*column.unit).collect();
-        assert_eq!(units, ["N/m", "N/m", "N/m²", "J", "J", "N", "rad/s", "m/s", "s", "m/s²", ""]);
+        assert_eq!(units, ["N/m", "N/m", "N/m²", "J", "J", "N", "rad/s", "m/s", "s", "m/s²", "", "m"]);
     }
 }

@@ -21,6 +21,8 @@ pub trait Observer: Sync {
     }
     /// Receives a warning; the job continues.
     fn warn(&self, _words: &str) {}
+    /// An evaluation begins: who wants to end the job may unwind from here.
+    fn begin(&self) {}
     /// A stage of `count` evaluations begins.
     fn progress(&self, _stage: &'static str, _count: u64) -> Box<dyn Progress> {
         Box::new(Silent)
@@ -39,6 +41,8 @@ pub trait Observer: Sync {
 
 /// The progress of a stage.
 pub trait Progress: Sync {
+    /// An evaluation begins: who wants to end the job may unwind from here.
+    fn begin(&self) {}
     /// One evaluation is known from an earlier run and takes no time; [`Self::inc`] counts it as well.
     fn known(&self) {}
     /// Another `more` evaluations are done.
@@ -71,5 +75,8 @@ impl Observer for Quiet<'_> {
     }
     fn resumable(&self) {
         self.0.resumable();
+    }
+    fn begin(&self) {
+        self.0.begin();
     }
 }

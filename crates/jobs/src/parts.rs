@@ -24,6 +24,9 @@ const LONGEST: u64 = 1024;
 /// The directory of parts, in that of the results.
 pub const PARTS: &str = "parts";
 
+/// The end of the words on a part that is damaged.
+const DAMAGED: &str = ": make it again";
+
 /// The ending of a part.
 const ENDING: &str = ".part";
 
@@ -94,13 +97,23 @@ pub struct Shared<'a> {
 }
 
 impl Shared<'_> {
-    /// Computes a share and writes it, unless the part is there already.
+    /// Computes a share and writes it, unless the part is there already. One that is damaged is made again.
     pub fn make(&self, shard: Shard, watch: &dyn Observer) -> Result<(), Error> {
         let Self { rows, ref identity, out, order, .. } = *self;
         let (len, width, parts) = (rows.len(), rows.width(), out.join(PARTS));
         let place = parts.join(shard.name());
         if let Some(path) = find(&parts, shard)? {
-            return match identity.difference(&read(&path, |_, _| {})?.identity) {
+            let head = match read(&path, |_, _| {}) {
+                Ok(head) => head,
+                Err(Error::Part { problem, .. }) if problem.ends_with(DAMAGED) => {
+                    watch.warn(&format!("{}: {problem}", path.display()));
+                    let refuse = |source| retune_store::Error::Output { path: path.clone(), source };
+                    std::fs::remove_file(&path).map_err(refuse)?;
+                    return self.make(shard, watch);
+                }
+                Err(other) => return Err(other),
+            };
+            return match identity.difference(&head.identity) {
                 None => {
                     // The process that made it may have been killed before it removed its work.
                     if let Some(work) = place.exists().then(|| {
@@ -210,12 +223,12 @@ fn read(path: &Path, mut visit: impl FnMut(usize, f64)) -> Result<Head, Error> {
         let there = next(&mut line)?;
         match Seal::plain().open(&line).and_then(grid_value) {
             Some((point, value)) if point == expected => visit(point, value),
-            _ if there => return Err(broken(&format!("it is damaged at point {expected}: make it again"))),
-            _ => return Err(broken(&format!("it ends before point {expected}: make it again"))),
+            _ if there => return Err(broken(&format!("it is damaged at number {expected}{DAMAGED}"))),
+            _ => return Err(broken(&format!("it ends before number {expected}{DAMAGED}"))),
         }
     }
     if next(&mut line)? {
-        return Err(broken("it has more points than it says: make it again"));
+        return Err(broken(&format!("it has more numbers than it says{DAMAGED}")));
     }
     let name = format!("-{}{ENDING}", hexadecimal(&hash.finalize()[..8]));
     match path.file_name().and_then(|file| file.to_str()) {
@@ -260,7 +273,8 @@ impl Shared<'_> {
             head.points = head.points.start / width..head.points.end / width;
             heads.push(head);
         }
-        check(&mut heads, self.rows.len(), &self.command, &place)?;
+        let command = format!("{} --out {}", self.command, self.out.display());
+        check(&mut heads, self.rows.len(), &command, &place)?;
         let [parts, points] = [(heads.len(), "part"), (self.rows.len(), "point")]
             .map(|(count, noun)| counted(count as u64, noun));
         watch.log(&format!("{parts}, {points}: complete, disjoint, of this study"))?;

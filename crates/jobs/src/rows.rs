@@ -35,6 +35,7 @@ pub fn compute(
 ) -> Vec<(Vec<f64>, Option<String>)> {
     let width = rows.width();
     let row = |row: usize| {
+        progress.begin();
         let mut made: Option<(Vec<f64>, Option<String>)> = None;
         let numbers: Vec<f64> = (0..width)
             .map(|i| {
@@ -61,7 +62,13 @@ pub fn of_each<T: Sync, U: Send>(
     progress: &dyn Progress,
     of: impl Fn(&T) -> Result<U, Error> + Sync + Send,
 ) -> Result<Vec<U>, Error> {
-    let made: Vec<Result<U, Error>> = all.par_iter().map(of).inspect(|_| progress.inc(1)).collect();
+    let one = |one: &T| {
+        progress.begin();
+        let made = of(one);
+        progress.inc(1);
+        made
+    };
+    let made: Vec<Result<U, Error>> = all.par_iter().map(one).collect();
     made.into_iter().collect()
 }
 

@@ -76,9 +76,6 @@ impl Equations {
         // Where a run starts is nothing to a motion that repeats.
         let Forcing { source, frequency, start: _ } = forcing;
         let omega = number(frequency.get());
-        if !omega.is_positive() {
-            return Err(Failure::Scene("a forcing whose omega is not above 0"));
-        }
         // k1 y + c1 dy/dt with y = Y cos φ.
         let base = |y: Interval| [y * k1, Interval::ZERO, -(y * c1)];
         let force = match source {
@@ -92,6 +89,9 @@ impl Equations {
                 return Err(Failure::Scene("a pulse or a record, under which no motion repeats"));
             }
         };
+        if !omega.is_positive() {
+            return Err(Failure::Scene("a forcing whose omega is not above 0"));
+        }
         let is_over_square = matches!(source, Source::Harmonic(Amplitude::BaseAcceleration, _));
         let (walls, hertz, factors) = match contact {
             None => ([Interval::ENTIRE; 2], [Interval::ZERO; 2], [Factor::None; 2]),

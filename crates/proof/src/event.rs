@@ -96,7 +96,7 @@ pub enum Failure {
     #[error("in a segment: no impact, lift-off or crest within {0} steps; its box is {1:.1e} wide")]
     Endless(usize, f64),
     /// The guess does not repeat after so many periods of the force: so far it is off.
-    #[error("the guess is refused; after {0} periods of the force it is {1:.1e} (m, m/s or rad) off")]
+    #[error("the guess is refused; after {0} period{s} of the force it is {1:.1e} (m, m/s or rad) off", s = if *_0 == 1 { "" } else { "s" })]
     Guess(usize, f64),
     /// The sequence of events of a motion becomes another one by a change of it of this size.
     #[error("by Newton's iteration: the sequence of impacts becomes another one by a change of {0:.1e}")]

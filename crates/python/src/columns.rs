@@ -12,16 +12,29 @@ pub const TOLD: usize = 100;
 /// What a row without a value has.
 const NOTHING: [f64; COUNT] = [f64::INFINITY, f64::NAN, f64::NAN, f64::NAN, f64::NAN, f64::NAN];
 
-/// The names of [`numbers_of`].
+/// The names of [`numbers_of`], the second of which is that of a quantity.
 pub fn column_names(quantity: &'static str) -> [&'static str; COUNT] {
     ["value", quantity, "stroke", "contact_force", "violation", "omega_worst"]
 }
 
-/// What an evaluation found, by [`column_names`]; stroke and force are NaN unless they are known.
-pub fn numbers_of(found: &Evaluation, [stroke, force]: [bool; 2]) -> [f64; COUNT] {
-    let known = |measure, known| if known { found.reached.get(Limit::Of(measure)) } else { f64::NAN };
+/// What is known of an evaluation beside its quantity, which is known in any case.
+#[derive(Clone, Copy)]
+pub struct Known {
+    pub quantity: Measure,
+    pub stroke: bool,
+    pub force: bool,
+}
+
+/// What an evaluation found, by [`column_names`]; stroke and force are NaN unless they are known, and so is the frequency of what has none.
+pub fn numbers_of(found: &Evaluation, Known { quantity, stroke, force }: Known) -> [f64; COUNT] {
+    let known = |measure, known| match known {
+        true => found.reached.get(Limit::Of(measure)),
+        false if measure == quantity => found.value,
+        false => f64::NAN,
+    };
     let [stroke, force] = [known(Measure::Stroke, stroke), known(Measure::ContactForce, force)];
     let omega = found.worst.scene.forcing.frequency.get();
+    let omega = if omega > 0.0 { omega } else { f64::NAN };
     // An empty sum of violations is -0.
     [found.ranked, found.value, stroke, force, found.violation + 0.0, omega]
 }

@@ -198,6 +198,9 @@ impl Observer for Monitor {
     fn warn(&self, words: &str) {
         self.tell("warning", words);
     }
+    fn begin(&self) {
+        self.end_if_stopped();
+    }
     fn progress(&self, name: &'static str, count: u64) -> Box<dyn Progress> {
         let [done, known] = [0; 2].map(AtomicU64::new);
         let stage = Arc::new(Stage { name, count, done, known, finished: AtomicBool::new(false) });
@@ -218,6 +221,9 @@ struct MonitoredStage {
 }
 
 impl Progress for MonitoredStage {
+    fn begin(&self) {
+        self.monitor.end_if_stopped();
+    }
     fn known(&self) {
         self.stage.known.fetch_add(1, Relaxed);
     }

@@ -1,7 +1,7 @@
 //! A study as a function of a design.
 
 use crate::arrays::{numbers, plain_row, table};
-use crate::columns::{COUNT, TOLD, column_names, in_columns, numbers_of};
+use crate::columns::{COUNT, Known, TOLD, column_names, in_columns, numbers_of};
 use crate::errors::{Fault, Given};
 use crate::monitor::{caught, on_pool};
 use crate::pool::pool;
@@ -23,8 +23,8 @@ pub struct Core {
     objective: Option<Arc<DesignObjective>>,
     /// Whether one evaluation may take long: it makes many runs, or a long one.
     takes_long: bool,
-    /// Whether stroke and force are known: a limit asks for them, or the stroke is that of a steady motion.
-    knows: [bool; 2],
+    /// What is known beside the quantity: what a limit asks for, and the stroke of a steady motion.
+    knows: Known,
 }
 
 /// The columns of a batch, and the rows without a value, each with its exception.
@@ -112,7 +112,7 @@ impl Core {
         self.design(x, &mut row)?;
         let found = self.found(py, objective, &row)?;
         let all = PyDict::new(py);
-        for (name, value) in column_names(self.quantity().0).into_iter().zip(numbers_of(&found, self.knows)) {
+        for (name, value) in column_names("largest").into_iter().zip(numbers_of(&found, self.knows)) {
             all.set_item(name, value)?;
         }
         all.set_item("runs", found.runs)?;
@@ -228,7 +228,13 @@ impl Core {
             || !study.objective().terms().iter().all(|(_, term)| is_one(term));
         let goal = study.goal();
         let limited = |measure| goal.limits.get(Limit::Of(measure)).is_some();
-        let knows = [limited(Measure::Stroke) || goal.objective.is_steady(), limited(Measure::ContactForce)];
+        // A stationary random motion has no largest stroke.
+        let is_steady = goal.objective.is_steady() && !goal.objective.is_stationary();
+        let knows = Known {
+            quantity: study.quantity(),
+            stroke: limited(Measure::Stroke) || is_steady,
+            force: limited(Measure::ContactForce),
+        };
         Ok(Self { study, file, objective, takes_long, knows })
     }
 

@@ -10,6 +10,7 @@ use nalgebra::DVector;
 use retune_model::{Bare, Coupled, Parameter, Scene, Side};
 use retune_solver::observe::Unobserved;
 use retune_solver::{Motion, Phase, Settings};
+use std::cell::OnceCell;
 use std::f64::consts::TAU;
 
 /// Periods of the force after which a run is looked at, again and again up to the last; one that has not settled by then is irregular.
@@ -87,20 +88,34 @@ fn repeated(shooting: &Shooting, scene: &Scene, value: f64, last: &[[f64; 4]]) -
     let end = last.len().checked_sub(1)?;
     let at = |i: usize| coordinates(scene, &last[i]);
     let size = distance(&at(end), &[0.0; 4]).max(f64::MIN_POSITIVE);
+    // A damper that floats comes to rest in the middle after all, but not in the time that a run has.
+    let afloat = OnceCell::new();
+    let is_afloat =
+        || *afloat.get_or_init(|| shooting.is_floating && touches_nothing(shooting, scene, &last[end]));
+    let rest = scene.damper.map_or(0.0, |damper| damper.rest_distance.get());
     for periods in 1..=MOST_PERIODS.min(end) {
         if distance(&at(end), &at(end - periods)) > NEAR * size {
             continue;
         }
         let own = shooting.of_periods(periods);
-        let start = own.unknowns(&last[end - periods + 1..], value);
+        let mut states = last[end - periods + 1..].to_vec();
+        if is_afloat() {
+            states.iter_mut().for_each(|y| y[2] = y[0] + rest);
+        }
+        let start = own.unknowns(&states, value);
         let Some(solution) = own.correct_at_value(&start) else { continue };
         let multipliers = super::orbit::multipliers(&solution.at.monodromy());
         let moved = own.norm(&(&solution.x - &start));
-        if multipliers[0].norm() < 1.0 && moved < 100.0 * NEAR {
+        if multipliers[0].norm() < 1.0 && (moved < 100.0 * NEAR || is_afloat()) {
             return shortest(&own, solution);
         }
     }
     None
+}
+
+/// Whether a run touches no wall over a period from a state on.
+fn touches_nothing(shooting: &Shooting, scene: &Scene, y: &[f64; 4]) -> bool {
+    seen(scene, shooting.settings(), 1, &[*y]).is_ok_and(|seen| seen.impacts.is_empty())
 }
 
 /// Whether two motions are one, at whatever crest of the force each begins.

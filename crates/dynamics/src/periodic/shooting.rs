@@ -4,7 +4,7 @@ use super::forced::{Damped, Flow, Forced, settings_of};
 use crate::parameter::Error;
 use crate::record::weights;
 use nalgebra::{DMatrix, DVector, Matrix4, Matrix6, Vector4};
-use retune_model::{Coupled, Parameter, Scene};
+use retune_model::{Coupled, NonNegative, Parameter, Scene};
 use retune_solver::Settings;
 
 /// Largest gap between segments of a solution, relative to the size of the motion.
@@ -13,6 +13,10 @@ const CLOSED: f64 = 2e-11;
 const ITERATIONS: usize = 9;
 /// A change larger than this share of the motion leaves the neighbourhood in which the iteration can be trusted.
 const FAR: f64 = 0.5;
+/// The spring of a damper that has none, as a share of `m2 ω²`. Without it a damper that touches no wall repeats wherever it floats, and no such
+/// motion is stable or alone; with it the one about the place of rest is. It moves any other motion by about this share of its size.
+const FLOATING: f64 = 1e-8;
+
 /// The equations of motions with a number of periods of the force, along a parameter.
 ///
 /// Their unknowns are the states at the beginnings of the segments, in units of the motion's size, and the parameter in units of `span`.
@@ -28,6 +32,8 @@ pub struct Shooting<S = Damped> {
     pub span: f64,
     /// Units of the state: what it is multiplied by.
     pub scale: Vector4<f64>,
+    /// Whether the damper has no spring of its own.
+    pub is_floating: bool,
 }
 
 /// The equations at some unknowns.
@@ -53,17 +59,24 @@ pub struct Solution {
 }
 
 impl Shooting {
-    /// The equations of motions of a damper of about the size of `size` (√J, see [`crate::record::coordinates`]), with one segment a period.
+    /// The equations of motions of a damper of about the size of `size` (√J, see [`crate::record::coordinates`]), with one segment a period. A damper
+    /// without a spring has one of a tiny share of its inertia.
     pub fn new(
-        scene: Scene,
+        mut scene: Scene,
         parameter: Parameter,
         periods: usize,
         (span, size): (f64, f64),
         settings: &Settings,
     ) -> Self {
         let scale = Vector4::from(weights(&scene)) / size;
+        let omega = scene.forcing.frequency.get();
+        let is_floating = scene.damper.is_some_and(|damper| damper.stiffness.get() == 0.0);
+        if let Some(damper) = scene.damper.as_mut().filter(|_| is_floating) {
+            let spring = NonNegative::new(FLOATING * damper.mass.get() * omega * omega);
+            damper.stiffness = spring.unwrap_or(damper.stiffness);
+        }
         let forced = Damped { scene, parameter, settings: settings_of(settings) };
-        Self { forced, periods, segments: periods, span, scale }
+        Self { forced, periods, segments: periods, span, scale, is_floating }
     }
 
     /// The same along another parameter from a value of this one on.

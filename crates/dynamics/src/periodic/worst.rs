@@ -86,7 +86,7 @@ impl Motions {
             return Self { largest, covered: f64::from(u8::from(is_stable)), irregular };
         }
         let [stable, irregular] = found.stable_and_irregular();
-        let covered = stable.iter().map(|[low, high]| high - low).sum::<f64>() / (to - from);
+        let covered = stable.iter().map(|[low, high]| high - low).sum::<f64>() / (to - from) + 0.0; // an empty sum is -0
         let irregular = irregular.into_iter().filter(|[low, high]| high - low > NARROW * (to - from));
         let irregular = irregular.map(|[low, high]| {
             let within = |sample: &&Sample| sample.value >= low && sample.value <= high;

@@ -99,7 +99,8 @@ fn reference() -> Reference {
 fn branch(duffing: Duffing, known: &Known) -> Branch<Duffing> {
     let Known { periods, motion, .. } = known;
     let scale = Vector4::new(0.2, 0.05, 1.0, 1.0);
-    let one = Shooting { forced: duffing, periods: *periods, segments: 1, span: 6.5, scale };
+    let one =
+        Shooting { forced: duffing, periods: *periods, segments: 1, span: 6.5, scale, is_floating: false };
     let start = one.unknowns(&[[motion.x, motion.v, 0.0, 0.0]], motion.omega);
     let seed = one.correct_at_value(&start).expect("the motion");
     let away = (&seed.x - &start).amax();

@@ -45,6 +45,23 @@ fn plan(samples: usize, starts: usize) -> Plan {
     Plan { samples, starts, passes: 2, ..Plan::over(Parameter::Omega, [5.0, 8.0]) }
 }
 
+/// Without a spring a damper repeats wherever it floats, if it touches no wall. Once such motions were called irregular.
+#[test]
+fn exact_a_damper_that_floats_repeats() {
+    let floating = Numbers { k2: 0.0, c2: 60.0, d: 1.0, c: 1.0, p: 100.0, ..SSVI };
+    let found = branches(&floating.scene(), plan(4, 4), &Settings::default(), Control::default());
+    let found = found.expect("branches");
+    let [branch] = &found.branches[..] else { panic!("{} branches", found.branches.len()) };
+    assert_eq!(branch.ends, [End::Range; 2]);
+    assert!(found.samples.iter().all(|sample| sample.irregular.is_empty()));
+    assert!(found.is_reached_from_rest(0));
+    for orbit in &branch.points {
+        let steady = Numbers { omega: orbit.value, ..floating }.coupled().steady(orbit.value);
+        let [own, exact] = [orbit.seen.largest(Measure::Energy), steady.e1_max];
+        assert!((own / exact - 1.0).abs() < 1e-6, "{own} {exact} at {}", orbit.value);
+    }
+}
+
 /// A damper that touches nothing: the branch is the steady response, its multipliers those of the linear flow.
 #[test]
 fn exact_the_branch_of_a_tmd() {

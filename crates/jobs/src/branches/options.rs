@@ -65,6 +65,14 @@ impl Options {
                 format!("the structure is {forcing}: only a forcing with an omega has periodic motions");
             return Err(refuse("STUDY", problem));
         }
+        if let Some((amplitude, size)) = study.scene.forcing.amplitude()
+            && size.get() == 0.0
+            && over != amplitude
+        {
+            let problem =
+                format!("{} is 0: nothing moves the structure; give it a value above 0", amplitude.symbol());
+            return Err(refuse("STUDY", problem));
+        }
         if self.margin && over != Parameter::Omega {
             let problem = format!("an isola is looked for over omega, not over {}", over.symbol());
             return Err(refuse("--margin", problem));
@@ -87,12 +95,16 @@ impl Options {
         if range[0] >= range[1] {
             return Err(refuse("--to", format!("{} is not above --from {}", range[1], range[0])));
         }
-        let runs = 2..=MOST;
-        if !runs.contains(&samples) || starts.max(apart) > MOST || fine != 0 && !runs.contains(&fine) {
-            let problem = format!(
-                "give 2 to {MOST} samples, at most {MOST} starts of each kind at each, and 0 or 2 to {MOST} fine runs"
-            );
-            return Err(refuse("--samples, --starts, --apart, --fine", problem));
+        let runs = format!("give 2 to {MOST}");
+        for (option, count, least, allowed) in [
+            ("--samples", samples, 2, runs.clone()),
+            ("--starts", starts, 0, format!("give at most {MOST}")),
+            ("--apart", apart, 0, format!("give at most {MOST}")),
+            ("--fine", fine, if fine == 0 { 0 } else { 2 }, format!("{runs}, or 0 for none")),
+        ] {
+            if count < least || count > MOST {
+                return Err(refuse(option, format!("{count} is not allowed here: {allowed}")));
+            }
         }
         let basins = self.basins.as_ref().map(|_| end("--basins", &self.basins, low)).transpose()?;
         let plan = Plan { samples, starts, apart, fine, passes: SPACINGS.len(), ..Plan::over(over, range) };

@@ -72,7 +72,8 @@ pub fn answer(motions: &Motions) -> Vec<String> {
     let (all, [from, to]) = (&motions.branches, motions.branches.plan.range);
     let (symbol, unit) = (motions.over().symbol(), motions.over().unit());
     let [stable, irregular] = all.stable_and_irregular();
-    let covered: f64 = stable.iter().map(|[from, to]| to - from).sum();
+    // An empty sum is -0.
+    let covered = stable.iter().map(|[from, to]| to - from).sum::<f64>() + 0.0;
     let share = 100.0 * covered / (to - from);
     let mut words = Vec::new();
     let largest = motions.largest.iter().enumerate();
@@ -106,6 +107,12 @@ pub fn answer(motions: &Motions) -> Vec<String> {
         counted(all.branches.len() as u64, "branch"),
         rounded(share, 4)
     ));
+    if motions.study.scene.damper.is_some_and(|damper| damper.stiffness.get() == 0.0) {
+        words.push(
+            "Without a spring (k2 = 0) a damper that touches no wall repeats wherever it floats: such motions stand here as the one about its place of rest."
+                .to_owned(),
+        );
+    }
     if all.ended {
         let count = all.branches.len();
         words.push(format!("The search ended after {count} branches: there may be more, and the largest of all may be on one of them."));
@@ -230,13 +237,12 @@ fn attractors(motions: &Motions) -> Block {
     let rows: Vec<Vec<String>> = settled(motions).filter(|one| !is_usual(one)).map(row).collect();
     let head =
         [&*column(motions.over().symbol()).heading(), "branch", "motion", "E1max, J", "starts", "from rest"];
-    let words = if rows.is_empty() {
-        "All starts end on branches that runs from rest lead to.".to_owned()
-    } else {
-        format!(
-            "Where starts end on motions that no run from rest leads to, or on none that repeats; {ATTRACTORS} has all."
-        )
-    };
+    if rows.is_empty() {
+        return Block::words("All starts end on branches that runs from rest lead to.");
+    }
+    let words = format!(
+        "Where starts end on motions that no run from rest leads to, or on none that repeats; {ATTRACTORS} has all."
+    );
     Block::table(words, head, rows)
 }
 

@@ -66,7 +66,9 @@ pub(super) fn coexisting(
     effort: Effort,
 ) -> Result<Option<Coexisting>, Unusable> {
     let strikes = scene.damper.is_some_and(|damper| damper.contact.is_some());
-    if !strikes || scene.forcing.is_transient() {
+    // Without a force all motions end at rest.
+    let is_forced = scene.forcing.amplitude().is_some_and(|(_, size)| size.get() > 0.0);
+    if !strikes || scene.forcing.is_transient() || !is_forced {
         return Ok(None);
     }
     let places = places(scene, own, goal, settings)?;

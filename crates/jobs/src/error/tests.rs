@@ -204,7 +204,7 @@ fn errors() -> Vec<Error> {
         Error::Requirement { place: "--mass".into(), problem: "missing: the mass of the damper".into() },
         Error::Argument { option: "--to", problem: "5 is not above --from 8".into() },
         Error::Interval { value: 0.0, most: 100 },
-        Error::Part { path: path.clone(), problem: "it is damaged at point 23: make it again".into() },
+        Error::Part { path: path.clone(), problem: "it is damaged at number 23: make it again".into() },
         Error::MissingParts {
             points: "6 to 11".into(),
             len: 24,

@@ -150,6 +150,8 @@ impl Sweep {
         match goal.evaluate(scene, &settings, f64::INFINITY) {
             Ok(found) => {
                 let omega = found.worst.scene.forcing.frequency.get();
+                // A record and a pulse have none.
+                let omega = if omega > 0.0 { omega } else { f64::INFINITY };
                 // An empty sum of violations is -0.
                 (vec![found.value, omega, found.violation + 0.0, none], None)
             }

@@ -56,7 +56,9 @@ pub(crate) fn each(sweep: &Sweep) -> String {
     let study = sweep.study();
     if sweep.plan().objective {
         let omega = study.scene.forcing.frequency.get();
-        return format!("each the objective of the study: {}", over(&study.objective(), omega));
+        let over = over(&study.objective(), omega);
+        let over = if over.is_empty() { over } else { format!(": {over}") };
+        return format!("each the objective of the study{over}");
     }
     let (t0, end) = (study.window.t0.get(), study.window.end.get());
     let start = if study.begins_at_rest().is_ok() { "rest" } else { "its start" };
@@ -201,6 +203,7 @@ fn columns(sweep: &Sweep, table: &Table) -> Vec<([String; 2], usize, Vec<f64>)> 
         names.iter().filter_map(|name| Some(of(find(name)?, name, WIDE.max(name.len() + 2)))).collect();
     let without = names.iter().filter_map(|name| Some(of(find(&format!("{name}_none"))?, "no damper", WIDE)));
     let worst = find("omega_worst").map(|column| of(column, "worst at", WIDE));
+    let worst = worst.filter(|(.., values)| values.iter().any(|omega| omega.is_finite()));
     let used =
         |columns: &[([String; 2], usize, Vec<f64>)]| columns.iter().map(|(_, width, _)| width).sum::<usize>();
     // The mark of a row must have room.

@@ -125,13 +125,16 @@ pub(super) fn each(
     starts: &[Vec<f64>],
     tell: impl FnMut(usize, &Row, &[f64]) -> Result<(), Error> + Send,
 ) -> Result<Refined, Error> {
-    let Task { study, search, journal, place, .. } = *task;
+    let Task { study, search, journal, place, watch } = *task;
     let stage = format!("{place}fminsearch");
     let mut objective = searched(study, search, &search.variables);
     let turns = Turns::new(tell);
     let tell_of = |number: usize| {
         let turns = &turns;
-        move |row: &Row, design: &[f64]| turns.tell(number, row, design)
+        move |row: &Row, design: &[f64]| {
+            watch.begin();
+            turns.tell(number, row, design)
+        }
     };
     let runs: Vec<Result<Run, Error>> = if objective.goal().follows_motions() {
         // One after the other: each has the objective learn its own motions.

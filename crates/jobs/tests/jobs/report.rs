@@ -135,9 +135,9 @@ fn called_for(desk: &Desk, out: &str) -> BTreeMap<&'static str, bool> {
         ["optimum", "certificate", "study"].map(|name| desk.read_json(&format!("{out}/{name}.json")));
     let winner = optimum["refine"]["winner"].as_u64().expect("a number") as usize - 1;
     let run = &optimum["refine"]["runs"][winner];
-    let starts = study["optimize"]["refine"]["starts"].as_u64().expect("a number") as usize;
     let at_end = |(name, axis): (&String, &Value)| {
-        let start = number(run, &format!("/start/{name}"));
+        // The first run begins at the best point of the grid.
+        let start = number(&optimum, &format!("/refine/runs/0/start/{name}"));
         let end = |which: &str| (number(axis, which) / start - 1.0).abs() < 1e-9;
         end("/from") || end("/to")
     };
@@ -146,11 +146,7 @@ fn called_for(desk: &Desk, out: &str) -> BTreeMap<&'static str, bool> {
     let near = certificate["limits"]["broken_near"].as_array().is_some_and(|near| !near.is_empty());
     BTreeMap::from([
         ("on-bound", optimum["on_bound"].as_array().is_some_and(|met| !met.is_empty())),
-        (
-            "grid-edge",
-            winner < starts
-                && grid.is_some_and(|axes| axes.iter().filter(|(_, axis)| axis.is_object()).any(at_end)),
-        ),
+        ("grid-edge", grid.is_some_and(|axes| axes.iter().filter(|(_, axis)| axis.is_object()).any(at_end))),
         ("irregular", certificate["motion"]["irregular"] == true),
         ("not-predictable", certificate["predictable"] == false),
         ("unsettled", optimum["objective"]["unsettled"].as_u64().is_some_and(|count| count > 0)),

@@ -104,7 +104,8 @@ fn contract_missing_parts_are_named() {
         Error::MissingParts { points, len: 24, shards, command, place } => {
             assert_eq!(points, "6 to 11, 18 to 23");
             assert_eq!(shards.as_deref(), Some("2/4, 4/4"));
-            assert_eq!(command, format!("retune optimize {}", desk.path("study.json").display()));
+            let [study, out] = ["study.json", "out"].map(|name| desk.path(name));
+            assert_eq!(command, format!("retune optimize {} --out {}", study.display(), out.display()));
             assert_eq!(place, desk.path("out/parts"));
         }
         other => panic!("{other}"),
@@ -162,14 +163,22 @@ fn contract_a_damaged_part_is_named() {
         std::fs::remove_file(&place).and_then(|()| std::fs::write(&place, bytes)).expect("a part");
     };
     write(&whole[..whole.len() - 5]);
-    part_is_refused(&desk, &name, "it is damaged at point 23: make it again");
+    part_is_refused(&desk, &name, "it is damaged at number 23: make it again");
+    // That makes it, the same.
+    let record = Record::default();
+    good(share(&request(&desk, "study.json", "out"), "2/2".parse().expect("a share"), &record));
+    assert_eq!(
+        record.warnings(),
+        format!("{}: it is damaged at number 23: make it again\n", place.display())
+    );
+    assert_eq!(std::fs::read(&place).expect("a part"), whole);
     let last = whole[..whole.len() - 1].iter().rposition(|byte| *byte == b'\n').expect("lines") + 1;
     write(&whole[..last]);
-    part_is_refused(&desk, &name, "it ends before point 23: make it again");
+    part_is_refused(&desk, &name, "it ends before number 23: make it again");
     write(b"something else\n");
     part_is_refused(&desk, &name, "it is no part: its first line is not that of one");
     write(&[whole.as_slice(), b"more\n"].concat());
-    part_is_refused(&desk, &name, "it has more points than it says: make it again");
+    part_is_refused(&desk, &name, "it has more numbers than it says: make it again");
     write(&whole);
     let other = format!("{}.part", name.replace(".part", "0"));
     std::fs::rename(&place, desk.path("out/parts").join(&other)).expect("a part");

@@ -119,7 +119,7 @@ fn contract_missing_shares_of_a_sweep_are_named_in_points() {
             assert!(
                 command.starts_with("retune sweep ")
                     && command.contains(" --over omega --from 5.65")
-                    && command.ends_with(" --points 7 --quantity E1max,stroke"),
+                    && command.contains(" --points 7 --quantity E1max,stroke --out "),
                 "{command}"
             );
         }

@@ -50,8 +50,8 @@ fn contract_optimize_writes_every_result_with_its_columns() {
     let before = optimum["refine"]["runs"][winner]["descent"]["E1max_before"].as_f64();
     assert_eq!(last[7].parse::<f64>().ok(), before, "{optimum}");
     assert!(optimum["E1max"].as_f64() < before);
-    // That of each start, and one from the best TMD.
-    assert_eq!(optimum["refine"]["runs"].as_array().map(Vec::len), Some(3));
+    // That of each start, one from the best TMD, and, as so few evaluations do not converge, three from lower places beside the best end.
+    assert_eq!(optimum["refine"]["runs"].as_array().map(Vec::len), Some(6));
     assert_eq!(optimum["failures"]["count"], 0);
 }
 
@@ -302,7 +302,11 @@ fn contract_a_lower_place_beside_the_answer_is_taken() {
     let desk = Desk::with(&study);
     let record = Record::default();
     good(tune(&request(&desk, "study.json", "out"), &record));
-    assert!(record.all().contains("\na lower place beside the best end"), "{}", record.all());
+    assert!(
+        record.all().contains("\nfminsearch, from a lower place beside the best end: "),
+        "{}",
+        record.all()
+    );
     let answer = desk.read_json("out/optimum.json");
     let [found, gap, own] = ["E1max", "D", "E1max_study"].map(|name| number(&answer, &format!("/{name}")));
     assert!(found < 0.45 * own && gap < 0.001, "{found} {gap} {own}");

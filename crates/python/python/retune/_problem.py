@@ -36,12 +36,12 @@ class Evaluation:
     unit: str
     #: The quantity itself, whether limits are kept or not.
     largest: float
-    #: Largest spring deflection, m, and contact force, N; NaN where no limit asks for them.
+    #: Largest spring deflection, m, and contact force, N; NaN where neither the quantity nor a limit asks for them.
     stroke: float
     contact_force: float
     #: The sum of reached / limit - 1 over the limits that are broken; 0 if none is.
     violation: float
-    #: The frequency of the worst run, rad/s.
+    #: The frequency of the worst run, rad/s; NaN of a pulse or a record.
     omega_worst: float
     #: The number of runs, and of those that should have settled and did not.
     runs: int
@@ -189,7 +189,7 @@ class Problem(_core.Core):
         if found["unsettled"]:
             warnings.warn(f"{found['unsettled']} of {found['runs']} runs did not settle: their largest values are those of the window", stacklevel=2)
         quantity, unit = self.quantity
-        return Evaluation(quantity=quantity, unit=unit, largest=found.pop(quantity), **found)
+        return Evaluation(quantity=quantity, unit=unit, **found)
 
     def gradient(self, x: ArrayLike) -> NDArray[np.float64]:
         """The derivatives of ``problem(x)`` by the design, exact: one for each of ``problem.names``, per SI unit.
@@ -207,8 +207,8 @@ class Problem(_core.Core):
     def batch(self, X: ArrayLike, threads: int | None = None) -> Table:
         """The values of ``n`` designs, the rows of ``X`` (n, d), on all cores, or on ``threads``; the numbers do not depend on that.
 
-        Returns columns: ``value`` as of ``problem(x)``, the quantity (``E1max``, J), ``stroke`` (m) and ``contact_force`` (N), NaN where no limit
-        asks for them, ``violation``, ``omega_worst`` (rad/s). A row without a value has an infinite ``value`` and NaN elsewhere;
+        Returns columns: ``value`` as of ``problem(x)``, the quantity (``E1max``, J), ``stroke`` (m) and ``contact_force`` (N), NaN where neither
+        the quantity nor a limit asks for them, ``violation``, ``omega_worst`` (rad/s; NaN of a pulse or a record). A row without a value has an infinite ``value`` and NaN elsewhere;
         ``errors`` has its exception.
         """
         columns, errors = self._batch(X, threads)

@@ -118,7 +118,8 @@ impl Other {
     pub fn reached(&self) -> String {
         match self.reached {
             Some(Reached { from_rest: false, ends, starts }) => {
-                format!("{ends} of {starts} starts where it is stable end there, none from rest")
+                let stable = if self.periods.is_some() { " where it is stable" } else { "" };
+                format!("{ends} of {starts} starts{stable} end there, none from rest")
             }
             _ => "runs from rest lead there".to_owned(),
         }

@@ -52,16 +52,19 @@ impl Optimum {
     pub fn search(&self) -> String {
         let winner = self.refine.winner;
         let RunNote { iterations, func_count, stop, descent, .. } = &self.refine.runs[winner - 1];
+        let begun = match self.beyond {
+            None => format!("start {winner} of {}", self.starts),
+            Some(from) => format!("from {from}"),
+        };
         let simplex = format!(
-            "fminsearch, start {winner} of {}: {} after {}, {}; TolX {:e} is {}",
-            self.starts,
+            "fminsearch, {begun}: {} after {}, {}; TolX {:e} is {}",
             stop_words(*stop),
             counted(*iterations, "iteration"),
             counted(*func_count, "evaluation"),
             self.refine.tol_x,
             self.refine.tol_x_mode,
         );
-        let begun = self.beyond.map_or(simplex, str::to_owned);
+        let begun = self.beyond.filter(|_| *iterations == 0).map_or(simplex, str::to_owned);
         let descent = descent.map_or_else(String::new, |DescentNote { from, evaluations }| {
             let from = if from.value.is_nan() { "outside the limits".to_owned() } else { from.words() };
             format!("; then a descent by derivatives from {from}, {}", counted(evaluations, "evaluation"))
