@@ -12,7 +12,7 @@ use thiserror::Error;
 
 /// The protocol, for `--help`.
 pub const PROTOCOL: &str = "\
-A design is a line on standard input: one number in SI units for each parameter that the study tunes, in the order k2 c2 D C m2, with \
+A design is a line on standard input: one number in SI units for each parameter that the study tunes, in the order k2 c2 D C m2 R, with \
 blanks or commas between them. Each line, an empty one too, is answered by one line on standard output, in order:
 
   160.605      the value by the study's objective (E1max in J, or what optimize.objective.quantity names) of a design that keeps \

@@ -54,6 +54,10 @@ def test_contract_a_limit_is_a_constraint_with_derivatives() -> None:
     energy = rt.Problem.from_study(study)
     study["optimize"]["objective"]["quantity"] = "stroke"
     stroke = rt.Problem.from_study(study)
+    # What is made small is known, though no limit asks for it.
+    found = stroke.evaluate(stroke.start)
+    assert found.stroke == found.largest == found.value == stroke(stroke.start)
+    assert stroke.batch([stroke.start])["stroke"][0] == found.stroke
     held = {"type": "ineq", "fun": lambda x: 0.15 - stroke(x), "jac": lambda x: -stroke.gradient(x)}
     found = minimize(energy.value_and_gradient, [2000, 300], jac=True, bounds=energy.bounds, constraints=[held], method="SLSQP")
     assert found.success and stroke(found.x) == pytest.approx(0.15, abs=1e-6), "the limit binds"

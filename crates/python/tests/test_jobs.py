@@ -114,6 +114,20 @@ def test_contract_ctrl_c_ends_a_search_and_resume_goes_on_to_the_same_bytes(tmp_
     assert files(resumed.out) == files(unbroken.out)
 
 
+def test_contract_ctrl_c_ends_a_large_grid_at_once(tmp_path: Path) -> None:
+    study = json.loads(small(tmp_path).read_text())
+    study["optimize"]["surf"] = {name: {**axis, "points": 400} for name, axis in SMALL.items()}
+    large = tmp_path / "large.json"
+    large.write_text(json.dumps(study))
+    with subprocess.Popen([sys.executable, "-c", INTERRUPTED, large, tmp_path / "out"], stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None and process.stdout.readline() == "ready\n"
+        time.sleep(1.0)
+        process.send_signal(signal.SIGINT)
+        begun = time.monotonic()
+        assert process.wait(timeout=60) == 42
+        assert time.monotonic() - begun < 5, "points that were not begun are not computed"
+
+
 def test_contract_ctrl_c_ends_a_batch(tmp_path: Path) -> None:
     code = """
 import sys, numpy as np, retune as rt

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import math
 import pickle
 import subprocess
 import threading
@@ -194,3 +195,10 @@ def test_exact_a_pulse_moves_a_free_mass_by_its_impulse() -> None:
     pulse = rt.Pulse("half sine", 2, 0.5, of="force", unit="kN")
     run = rt.Problem(free, record=pulse, window=(0, 2)).simulate()
     assert run.maxima["v1max"] == pytest.approx(2000 * 0.5 * 2 / np.pi / 10, rel=1e-13)
+
+
+def test_contract_a_random_motion_has_no_largest_stroke_and_no_frequency() -> None:
+    problem = rt.Problem.from_study(STUDIES / "random-tmd.json")
+    found = problem.evaluate(problem.start)
+    assert found.value == found.largest > 0
+    assert math.isnan(found.stroke) and math.isnan(found.omega_worst)

@@ -189,6 +189,9 @@ pub fn bounded(
         None => {
             let lower = optimize.bounds.get(Parameter::K2).map_or(0.0, |(lower, _)| lower);
             optimize.bounds.set(Parameter::K2, Some((lower, Some(value))));
+            for start in &mut optimize.starts {
+                start.set(Parameter::K2, start.get(Parameter::K2).map(|k2| k2.min(value)));
+            }
             if let Some(global) = &mut optimize.global {
                 global.sides.set(Parameter::K2, None);
             }

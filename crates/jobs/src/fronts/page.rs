@@ -142,7 +142,8 @@ fn needs(fronts: &Fronts, sweep: Sweep) -> Block {
         rows.push(cells);
     }
     let steady = (0..fronts.plan.dampers.len()).any(|damper| fronts.is_steady(damper));
-    let but = if steady { ", strokes in a steady motion but for those" } else { "" };
+    let but =
+        if steady { "; where the objective is steady, strokes are those of the steady motion" } else { "" };
     Block::table(
         format!("What they need and what the structure does: the largest from rest on{but}."),
         head,

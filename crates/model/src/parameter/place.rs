@@ -17,7 +17,7 @@ pub enum Absent {
     #[error("the damper has no walls")]
     NoWalls,
     /// The walls are rigid: they have a restitution alone.
-    #[error("the walls are rigid: they have `e` alone")]
+    #[error("the walls are rigid: `restitution` is all that they have")]
     Rigid,
     /// Another number gives the forcing.
     #[error("the forcing of the scene is given by `{0}`")]

@@ -194,7 +194,8 @@ class Problem(_core.Core):
     def gradient(self, x: ArrayLike) -> NDArray[np.float64]:
         """The derivatives of ``problem(x)`` by the design, exact: one for each of ``problem.names``, per SI unit.
 
-        They are those of the run behind the value, at its frequency and at the time of its maximum. Where two maxima are equally high (two
+        They are those of the run behind the value, at its frequency and at the time of its maximum. Over a band with impacts, the search for
+        a peak may end beside its top: the derivatives of the value then differ from these. Where two maxima are equally high (two
         peaks over a band, two periods of a run) the value has a kink, and these are the derivatives of one of them: a subgradient. Of a
         design that breaks a limit they are those of its value above 1e100. Of an irregular motion they are right, large, and of no use.
         """
