@@ -307,6 +307,12 @@ pub struct TunedDamper {
     pub design: Design,
 }
 
+/// Whether it is a gap that nobody can build: a search that ends where there is none stops short of it, at 1e-16 m.
+pub(crate) fn is_no_gap(parameter: Parameter, value: f64) -> bool {
+    const BUILT: f64 = 1e-9;
+    [Parameter::D, Parameter::C].contains(&parameter) && value < BUILT
+}
+
 impl TunedDamper {
     /// From a damper of a scene, with what is varied of it.
     pub fn of(damper: &Damper, varied: &[Parameter]) -> Self {
@@ -329,6 +335,7 @@ impl TunedDamper {
         let known = mass.into_iter().chain(design).filter(|(_, value)| !value.is_nan());
         let said: Vec<String> = known
             .map(|(parameter, value)| {
+                let value = if is_no_gap(parameter, value) { 0.0 } else { value };
                 format!("{parameter} = {} {}", rounded(value, digits(parameter)), parameter.unit())
             })
             .collect();

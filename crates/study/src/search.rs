@@ -37,6 +37,9 @@ pub struct Search {
     pub options: Options,
 }
 
+/// The largest gap, m.
+const FARTHEST: f64 = 1e6;
+
 impl Study {
     /// Checks the rules between the fields.
     pub fn check(&self) -> Result<(), Rule> {
@@ -74,6 +77,12 @@ impl Study {
         {
             let allowed = "a number above 0: the base would move without end";
             return Err(Rule::not_allowed("scene.forcing.omega", 0.0, allowed));
+        }
+        for gap in [Parameter::D, Parameter::C] {
+            if let Some(value) = gap.of(&self.scene).filter(|gap| *gap > FARTHEST) {
+                let allowed = "at most 1e6 m, beyond which rounding loses the motion; or leave `contact` out: then there is no wall";
+                return Err(Rule::not_allowed(format!("scene.damper.{gap}"), value, allowed));
+            }
         }
         if !(self.solver.atol >= 0.0 && self.solver.atol.is_finite()) {
             return Err(Rule::not_allowed("solver.atol", self.solver.atol, FINITE));

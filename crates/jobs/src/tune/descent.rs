@@ -123,13 +123,16 @@ pub(super) fn go_on(
     from: &'static str,
     design: &[f64],
 ) -> Result<(), Error> {
-    let Task { search, journal, place, .. } = *task;
+    let Task { search, journal, place, watch, .. } = *task;
+    let bar = watch.progress("fminsearch", 1);
     let mut run = quietly(task, &mut refined.objective, design)?;
     let stage = format!("{place}fminsearch descent");
     if refined.objective.goal().has_pieces() {
         let foot = descend(&refined.objective, search, &run.minimum.x, journal, &stage);
         take(&mut run, foot);
     }
+    bar.inc(1);
+    bar.finish();
     refined.push(from, run);
     Ok(())
 }

@@ -208,7 +208,10 @@ fn run_following(
 /// A run from a design, which nobody hears of.
 pub(super) fn quietly(task: &Task, objective: &mut DesignObjective, start: &[f64]) -> Result<Run, Error> {
     let stage = format!("{}fminsearch", task.place);
-    let tell = |_: &Row, _: &[f64]| ControlFlow::Continue(());
+    let tell = |_: &Row, _: &[f64]| {
+        task.watch.begin();
+        ControlFlow::Continue(())
+    };
     if objective.goal().follows_motions() {
         run_following(objective, task.search, start, (task.journal, &stage), tell)
     } else {

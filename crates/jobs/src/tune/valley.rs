@@ -1,6 +1,7 @@
 //! How far each parameter of a design may go, the others held, until its value is 0.1 % larger: what its digits are worth.
 
 use super::objective::{Task, kept, searched};
+use crate::summary::is_no_gap;
 use rayon::prelude::*;
 use retune_model::Parameter;
 use retune_optim::Bounds;
@@ -112,7 +113,7 @@ impl Valley {
     pub(crate) fn words(&self) -> Option<String> {
         let Self { variable, from, to, open, own } = self;
         let (name, unit) = (variable.symbol(), variable.unit());
-        if to - from <= FLAT * own.abs() {
+        if to - from <= FLAT * own.abs() || is_no_gap(*variable, *to) {
             return None;
         }
         let [low, high] = [inward(*from, f64::ceil), inward(*to, f64::floor)].map(short);

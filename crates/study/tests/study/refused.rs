@@ -189,6 +189,12 @@ fn contract_values_out_of_range_are_named_with_what_is_allowed() {
     }
     refused("/window/T", json!(0), "window.T: 0 is not allowed here: give a finite number above 0");
     refused("/window/t0", json!(4), "window: t0 = 4 s is not before T = 4 s: the window is empty");
+    // Once the stroke was lost to rounding, and a linear motion called irregular.
+    refused(
+        "/scene/damper/D",
+        json!(1e9),
+        "scene.damper.D: 1000000000 is not allowed here: give at most 1e6 m, beyond which rounding loses the motion; or leave `contact` out: then there is no wall",
+    );
     refused(
         "/optimize/refine/starts",
         json!(0),
