@@ -68,6 +68,7 @@ def test_contract_a_problem_without_a_file_is_written_and_verified(tmp_path: Pat
     problem = rt.Problem.from_study(json.loads(small(tmp_path).read_text()))
     first = rt.optimize(problem, tmp_path / "out")
     again = rt.optimize(problem, tmp_path / "out")
+    assert json.loads((first.out / "manifest.json").read_text())["made_by"]["study"] == "study.json"
     assert first.x.tolist() == again.x.tolist() and rt.verify(again.out)
     foreign = tmp_path / "foreign"
     foreign.mkdir()

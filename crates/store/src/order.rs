@@ -49,7 +49,10 @@ pub enum Extent {
 impl Order {
     /// The owner of the results that this request makes in `place`, which must exist.
     pub fn made_by(&self, place: &Path) -> MadeBy {
-        let full = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        // A study that is not written yet is that beside the results that will be.
+        let full = |path: &Path| {
+            path.canonicalize().or_else(|_| std::path::absolute(path)).unwrap_or_else(|_| path.to_owned())
+        };
         let (study, place) = (full(&self.study), full(place));
         let study = pathdiff::diff_paths(&study, place).unwrap_or(study);
         let study = study.to_string_lossy().replace(std::path::MAIN_SEPARATOR, "/");

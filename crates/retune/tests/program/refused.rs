@@ -183,7 +183,7 @@ fn contract_missing_parts_are_named_with_what_to_type() {
         assert!(said.starts_with("wrote out/parts/0000"), "{said}");
     }
     let words = "error: out/parts: no part holds points 6 to 11, 18 to 23 of 24: \
-                 make what is missing with `retune optimize study.json --shard i/N`, i/N = 2/4, 4/4\n";
+                 make what is missing with `retune optimize study.json --out out --shard i/N`, i/N = 2/4, 4/4\n";
     let merge = ["merge", "study.json", "--quiet", "--out", "out"];
     assert_eq!(desk.refused(&merge), words);
     let through_just = desk.command(&merge).env("RETUNE_RUN_AS", "just").output().expect("the program");
