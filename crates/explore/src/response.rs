@@ -233,11 +233,12 @@ pub fn worst(study: &Study, whose: &str, is_stale: &(dyn Fn() -> bool + Sync)) -
         .with("figures", figures))
 }
 
-/// The worst without a damper; of the steady motion, where that is more than a window holds in which the structure has not settled.
+/// The worst without a damper; of the steady motion, where that is more than a window holds in which the structure alone has not settled. Where that
+/// with its damper has not either, both are of the window.
 fn without(study: &Study, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<Option<f64>, Stale> {
     let bare = bare(study);
     let found = Curve::own(&bare).worst(is_stale)?.map(|[value, _]| value);
-    if bare.unsettled().is_none() {
+    if bare.unsettled().is_none() || study.unsettled().is_some() {
         return Ok(found);
     }
     let Band { from, to, .. } = band(study);

@@ -51,7 +51,10 @@ pub fn certify_file(request: &Request, watch: &dyn Observer) -> Result<Certifica
         let source = std::io::Error::other("the results of a search stand there; give another --out");
         return Err(retune_store::Error::Output { path: out, source }.into());
     }
+    // A strongly irregular motion takes minutes.
+    let bar = watch.progress("certificate", 1);
     let certificate = request.on_threads(|| certify(&study))?;
+    bar.finish();
     let order = request.order(KIND.command);
     let results = if beside {
         let is_ours = |name: &str| name == FILE;

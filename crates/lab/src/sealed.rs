@@ -10,7 +10,7 @@ use retune_store::json_text;
 use retune_store::manifest::{MadeBy, Manifest, NAME, file_sha256};
 use retune_study::{Solver, Span, Study};
 use serde_json::Value;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
@@ -51,7 +51,7 @@ pub fn seal<'a>(folder: &Path, kind: &Kind, plan: Value, cases: impl Iterator<It
         solver: None,
         files,
         earlier: BTreeMap::new(),
-        parts: BTreeSet::new(),
+        parts: BTreeMap::new(),
     };
     Ok(fs::write(folder.join(NAME), json_text(&manifest, NAME)?)?)
 }

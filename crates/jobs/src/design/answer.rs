@@ -122,8 +122,13 @@ pub(super) fn build(requirements: &Requirements, compared: &Comparison) -> Vec<S
     let (name, own) = (goal.name(), said(chosen.goal));
     let times = compared.none.goal / chosen.goal;
     let reduction = if times.is_finite() {
-        let (none, times) = (said(compared.none.goal), rounded(times, 3));
-        format!("{name} falls from {none} to {own}, {times} times less")
+        let none = said(compared.none.goal);
+        let less = if times < 1.1 {
+            format!("{} less", percent(1.0 - 1.0 / times))
+        } else {
+            format!("{} times less", rounded(times, 3))
+        };
+        format!("{name} falls from {none} to {own}, {less}")
     } else {
         format!("{name} is {own}, and has no bound without a damper")
     };
@@ -146,8 +151,10 @@ pub(super) fn build(requirements: &Requirements, compared: &Comparison) -> Vec<S
                     format!("{has}, but cannot be trusted: {}", legible(certificate.reason()))
                 }
                 (None, _) => {
-                    let less = percent(1.0 - ssvi.goal / chosen.goal);
-                    format!("{has}, {less} less, for which alone walls are not worth it")
+                    let share = 1.0 - ssvi.goal / chosen.goal;
+                    let less =
+                        if share < 1e-4 { "as much".to_owned() } else { format!("{} less", percent(share)) };
+                    format!("{has}, {less}, for which alone walls are not worth it")
                 }
             }
         }

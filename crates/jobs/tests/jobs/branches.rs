@@ -65,7 +65,7 @@ fn contract_what_is_asked_for_is_checked() {
     let text = |text: &str| Some(text.to_owned());
     wrong(Options { from: text("fast"), ..options() }, "--from: ");
     wrong(Options { from: text("6"), ..options() }, "--to: 5.266 is not above --from 6");
-    wrong(Options { samples: 1, ..options() }, "2 to 10000 samples");
+    wrong(Options { samples: 1, ..options() }, "--samples: 1 is not allowed here: give 2 to 10000");
     wrong(
         Options { over: Parameter::K2, from: text("-1"), to: text("9"), ..options() },
         "-1 N/m: give a value above 0",

@@ -82,7 +82,10 @@ fn contract_results_are_the_same_bytes_with_one_thread_and_two_and_each_stage_te
         let record = Record::default();
         let request = request(&desk, "study.json", &threads.to_string());
         good(tune(&Request { threads: Some(threads), ..request }, &record));
-        assert_eq!(record.stages(), "surf 24\nfminsearch 2\ndescents 3\ncertificates 1\n");
+        // Three times a lower place is found beside the best end.
+        let again = "fminsearch 1\n".repeat(3);
+        let stages = format!("surf 24\nfminsearch 2\ndescents 3\n{again}certificates 1\n");
+        assert_eq!(record.stages(), stages);
         let said = record.all();
         said.lines().filter(|line| line.contains("E+0")).map(str::to_owned).collect::<Vec<_>>()
     });

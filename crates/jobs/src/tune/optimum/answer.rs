@@ -130,6 +130,10 @@ impl Optimum {
         } else {
             format!("{} with {}", times(self.study), self.baseline)
         };
+        // Without a damper there is no stroke.
+        if self.value.quantity.is_of_damper() {
+            return format!("instead  {study}");
+        }
         format!("instead  {} without a damper, {study}", times(self.none))
     }
 }
