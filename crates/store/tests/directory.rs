@@ -130,7 +130,7 @@ fn contract_names_that_lead_elsewhere_are_refused_and_what_is_there_stays() {
     };
     let parts = |name: &str| {
         let mut said: serde_json::Value = serde_json::from_str(&told).expect("JSON");
-        said["parts"] = [name].into();
+        said["parts"][name] = "the SHA-256 of its study".into();
         said.to_string()
     };
     let elsewhere = ["a/precious", "../theirs/precious", "a", "", absolute.as_str()];
