@@ -54,6 +54,9 @@ pub struct Linear {
     #[serde(skip_serializing_if = "Option::is_none")]
     better_but: Option<String>,
     pub needs: Largest,
+    /// Whether the value is a weighted sum.
+    #[serde(skip)]
+    of_sum: bool,
 }
 
 impl Serialize for Largest {
@@ -185,6 +188,7 @@ impl Needs {
                         value: Amount::new(study.quantity(), found.value),
                         better_but: better.then(|| excluded(study, search, design, &scene, &needs)),
                         needs,
+                        of_sum: !study.objective().sum.is_empty(),
                     })
                 });
                 (none, linear)
@@ -198,10 +202,11 @@ impl Needs {
     /// What a reader must know first: a better damper that the study excludes, and what the damper makes worse.
     pub fn warnings(&self) -> Vec<String> {
         let mut lines: Vec<String> = self.contacts.iter().flat_map(Contacts::warnings).collect();
-        if let Some(Linear { k2, c2, value, better_but: Some(why), needs }) = &self.linear {
+        if let Some(Linear { k2, c2, value, better_but: Some(why), needs, of_sum }) = &self.linear {
             let (k2, c2) = (rounded(*k2, 4), rounded(*c2, 4));
+            let sum = if *of_sum { "a weighted sum of " } else { "" };
             lines.push(format!(
-                "a linear damper of the same mass is better: k2 = {k2} N/m, c2 = {c2} N·s/m has {} {}, a stroke of {} and no \
+                "a linear damper of the same mass is better: k2 = {k2} N/m, c2 = {c2} N·s/m has {sum}{} {}, a stroke of {} and no \
                  impacts; {why}",
                 value.quantity.name(),
                 value.words(),

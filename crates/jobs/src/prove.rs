@@ -56,8 +56,16 @@ pub fn prove(path: &Path, guess: &Guess) -> Result<Proof, Error> {
         None => found(&study)?,
     };
     let theorem = retune_proof::prove(&study.scene, start, periods)
-        .map_err(|failure| Error::NotProven { name: study.name().to_owned(), why: failure.to_string() })?;
+        .map_err(|failure| not_proven(&study, failure.to_string()))?;
     Ok(Proof { study: study.name().to_owned(), omega: study.scene.forcing.frequency.get(), theorem })
+}
+
+/// Why nothing is proven of a study.
+fn not_proven(study: &Study, mut why: String) -> Error {
+    if study.scene.damper.is_some_and(|damper| damper.stiffness.get() == 0.0) {
+        why += "; without a spring (k2 = 0) a damper that touches no wall repeats wherever it floats, and no such motion is alone";
+    }
+    Error::NotProven { name: study.name().to_owned(), why }
 }
 
 /// The frequency of the worst run of a search's results.
@@ -72,11 +80,9 @@ fn worst(path: &Path) -> Result<Option<Setting>, Error> {
 
 /// What the run settles on.
 fn found(study: &Study) -> Result<(usize, [f64; 4]), Error> {
-    let none = || Error::NotProven {
-        name: study.name().to_owned(),
-        why:
-            "none found: the run settles on no periodic motion; give --from and --periods, or another --omega"
-                .to_owned(),
+    let none = || {
+        let why = "none found: the run settles on no periodic motion; give --from and --periods, or another --omega";
+        not_proven(study, why.to_owned())
     };
     // What touches no wall has one motion that repeats, whatever the guess; what has no such run is refused by the proof, in its words.
     let has_walls = study.scene.damper.is_some_and(|damper| damper.contact.is_some());

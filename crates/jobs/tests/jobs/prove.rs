@@ -49,6 +49,22 @@ fn reference_the_tuned_dampers_are_proven_at_their_worst_frequencies() {
     }
 }
 
+/// A frequency that is set is proven, not that of the worst run.
+#[test]
+fn contract_the_frequency_that_is_set_is_proven() {
+    let settings = vec![Setting::new(Parameter::Omega, 6.5)];
+    let proof = good(prove(&place("results/ssvi"), &Guess { settings, ..Guess::default() }));
+    assert_eq!(json!(proof)["omega"], 6.5);
+}
+
+#[test]
+fn contract_a_damper_that_floats_is_not_proven_and_told_why() {
+    let settings = vec![Setting::new(Parameter::K2, 0.0)];
+    let guess = Guess { settings, ..at(6.0) };
+    let error = refused(prove(&place("studies/tmd-free.json"), &guess));
+    assert!(error.to_string().contains("without a spring (k2 = 0)"), "{error}");
+}
+
 /// Losses with the same restitution at every speed: the worst of the hedged damper's five.
 #[test]
 fn reference_the_hedged_damper_is_proven_at_its_worst_restitution() {
