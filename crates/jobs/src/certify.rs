@@ -53,8 +53,9 @@ pub fn certify_file(request: &Request, watch: &dyn Observer) -> Result<Certifica
     }
     // A strongly irregular motion takes minutes.
     let bar = watch.progress("certificate", 1);
-    let certificate = request.on_threads(|| certify(&study))?;
+    let certificate = request.on_threads(|| certify(&study));
     bar.finish();
+    let certificate = certificate?;
     let order = request.order(KIND.command);
     let results = if beside {
         let is_ours = |name: &str| name == FILE;

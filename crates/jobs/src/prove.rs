@@ -62,7 +62,7 @@ pub fn prove(path: &Path, guess: &Guess) -> Result<Proof, Error> {
 
 /// Why nothing is proven of a study.
 fn not_proven(study: &Study, mut why: String) -> Error {
-    if study.scene.damper.is_some_and(|damper| damper.stiffness.get() == 0.0) {
+    if study.scene.damper.is_some_and(|damper| damper.is_floating()) {
         why += "; without a spring (k2 = 0) a damper that touches no wall repeats wherever it floats, and no such motion is alone";
     }
     Error::NotProven { name: study.name().to_owned(), why }

@@ -309,6 +309,7 @@ pub struct TunedDamper {
 
 /// Whether it is a gap that nobody can build: a search that ends where there is none stops short of it, at 1e-16 m.
 pub(crate) fn is_no_gap(parameter: Parameter, value: f64) -> bool {
+    /// The least gap that is one, m.
     const BUILT: f64 = 1e-9;
     [Parameter::D, Parameter::C].contains(&parameter) && value < BUILT
 }

@@ -56,6 +56,13 @@ struct InFile {
 #[error("missing field `{0}`: a damper in a cavity has D, C and contact, one without walls has none of them")]
 struct Missing(&'static str);
 
+impl Damper {
+    /// Whether it has no spring: where it touches no wall it then repeats wherever it floats, and no such motion is alone.
+    pub fn is_floating(&self) -> bool {
+        self.stiffness.get() == 0.0
+    }
+}
+
 impl TryFrom<InFile> for Damper {
     type Error = Missing;
 

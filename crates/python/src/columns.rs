@@ -33,8 +33,7 @@ pub fn numbers_of(found: &Evaluation, Known { quantity, stroke, force }: Known) 
         false => f64::NAN,
     };
     let [stroke, force] = [known(Measure::Stroke, stroke), known(Measure::ContactForce, force)];
-    let omega = found.worst.scene.forcing.frequency.get();
-    let omega = if omega > 0.0 { omega } else { f64::NAN };
+    let omega = found.worst_omega().unwrap_or(f64::NAN);
     // An empty sum of violations is -0.
     [found.ranked, found.value, stroke, force, found.violation + 0.0, omega]
 }

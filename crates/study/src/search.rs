@@ -37,6 +37,13 @@ pub struct Search {
     pub options: Options,
 }
 
+impl Search {
+    /// The damper that it starts from as a design: the value of each of [`Self::variables`], in SI units.
+    pub fn own(&self) -> Vec<f64> {
+        self.variables.iter().map(|variable| variable.get(&self.damper)).collect()
+    }
+}
+
 /// The largest gap, m.
 const FARTHEST: f64 = 1e6;
 

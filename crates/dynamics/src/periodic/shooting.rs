@@ -70,7 +70,7 @@ impl Shooting {
     ) -> Self {
         let scale = Vector4::from(weights(&scene)) / size;
         let omega = scene.forcing.frequency.get();
-        let is_floating = scene.damper.is_some_and(|damper| damper.stiffness.get() == 0.0);
+        let is_floating = scene.damper.is_some_and(|damper| damper.is_floating());
         if let Some(damper) = scene.damper.as_mut().filter(|_| is_floating) {
             let spring = NonNegative::new(FLOATING * damper.mass.get() * omega * omega);
             damper.stiffness = spring.unwrap_or(damper.stiffness);

@@ -107,7 +107,7 @@ pub fn answer(motions: &Motions) -> Vec<String> {
         counted(all.branches.len() as u64, "branch"),
         rounded(share, 4)
     ));
-    if motions.study.scene.damper.is_some_and(|damper| damper.stiffness.get() == 0.0) {
+    if motions.study.scene.damper.is_some_and(|damper| damper.is_floating()) {
         words.push(
             "Without a spring (k2 = 0) a damper that touches no wall repeats wherever it floats: such motions stand here as the one about its place of rest."
                 .to_owned(),

@@ -149,9 +149,7 @@ impl Sweep {
         let none = bare.map_or(f64::INFINITY, |found| found.value);
         match goal.evaluate(scene, &settings, f64::INFINITY) {
             Ok(found) => {
-                let omega = found.worst.scene.forcing.frequency.get();
-                // A record and a pulse have none.
-                let omega = if omega > 0.0 { omega } else { f64::INFINITY };
+                let omega = found.worst_omega().unwrap_or(f64::INFINITY);
                 // An empty sum of violations is -0.
                 (vec![found.value, omega, found.violation + 0.0, none], None)
             }

@@ -1,4 +1,5 @@
-//! The finish of every search: descents by derivatives from where its refinements end, and from the best TMD.
+//! The finish of every search: descents by derivatives from where its refinements end, and from the best TMD; and further runs from the damper of the
+//! study and from places beside the best end, where these are lower.
 
 use super::log::worth;
 use super::objective::{Task, searched};
@@ -47,6 +48,8 @@ pub(super) fn finish(task: &Task, refined: &mut Refined) -> Result<(), Error> {
     for (run, foot) in runs.iter_mut().zip(&mut feet) {
         foot.into_iter().for_each(|foot| take(run, foot));
     }
+    refined.take_lowest();
+    let Refined { runs, .. } = refined;
     let mut of_tmd = tmd.zip(feet.flatten().next());
     if of_tmd.is_none() {
         // In closed form no search has to end above it.
@@ -64,9 +67,6 @@ pub(super) fn finish(task: &Task, refined: &mut Refined) -> Result<(), Error> {
     }
     own(task, refined)?;
     for (number, run) in refined.runs.iter().enumerate() {
-        if run.minimum.value < refined.runs[refined.winner].minimum.value {
-            refined.winner = number;
-        }
         let Some(Descended { from, evaluations }) = run.descent else { continue };
         let begin =
             refined.beyond(number).map_or_else(|| format!("the end of start {}", number + 1), str::to_owned);
@@ -82,16 +82,18 @@ pub(super) fn finish(task: &Task, refined: &mut Refined) -> Result<(), Error> {
 /// Where the damper of the study is better than all ends, the search goes on from it: no answer is above what was given.
 fn own(task: &Task, refined: &mut Refined) -> Result<(), Error> {
     let Task { study, search, watch, .. } = *task;
-    let design: Vec<f64> = search.variables.iter().map(|variable| variable.get(&search.damper)).collect();
-    let inside = design.iter().zip(&search.options.bounds).all(|(value, bounds)| bounds.contain(*value));
+    let design = search.own();
+    if !design.iter().zip(&search.options.bounds).all(|(value, bounds)| bounds.contain(*value)) {
+        return Ok(());
+    }
     let least = (1.0 - GAIN) * refined.best().minimum.value;
     let mut objective = searched(study, search, &search.variables);
-    let follows = objective.goal().follows_motions();
-    let mut value = || match follows {
-        true => objective.learn(&design).map_or(f64::INFINITY, |found| found.ranked),
-        false => objective.value(&design, least),
+    let value = if objective.goal().follows_motions() {
+        objective.learn(&design).map_or(f64::INFINITY, |found| found.ranked)
+    } else {
+        objective.value(&design, least)
     };
-    if !inside || value() >= least {
+    if value >= least {
         return Ok(());
     }
     watch.log("the damper of the study is better than the ends of all starts: the search goes on from it")?;
@@ -117,12 +119,7 @@ pub(super) fn lowest_of_valleys(
 }
 
 /// One more run from a design, and a descent from its end.
-pub(super) fn go_on(
-    task: &Task,
-    refined: &mut Refined,
-    from: &'static str,
-    design: &[f64],
-) -> Result<(), Error> {
+fn go_on(task: &Task, refined: &mut Refined, from: &'static str, design: &[f64]) -> Result<(), Error> {
     let Task { search, journal, place, watch, .. } = *task;
     let bar = watch.progress("fminsearch", 1);
     let mut run = quietly(task, &mut refined.objective, design)?;

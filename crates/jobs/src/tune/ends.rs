@@ -53,7 +53,7 @@ pub(super) fn starts(search: &Search, on_grid: &[Vec<f64>], explored: Option<&Ex
     starts.extend(explored.map(|explored| explored.starts(search.starts)).unwrap_or_default());
     starts.extend(search.given.iter().cloned());
     if starts.is_empty() {
-        starts.push(search.variables.iter().map(|variable| variable.get(&search.damper)).collect());
+        starts.push(search.own());
     }
     starts
 }

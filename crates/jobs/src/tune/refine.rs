@@ -54,11 +54,18 @@ impl Refined {
 
     /// Adds a run from elsewhere.
     pub(super) fn push(&mut self, from: &'static str, run: Run) {
-        if run.minimum.value < self.best().minimum.value {
-            self.winner = self.runs.len();
-        }
         self.runs.push(run);
         self.beyond.push(from);
+        self.take_lowest();
+    }
+
+    /// The run with the smallest value becomes the winner, if it is smaller than that of the present one.
+    pub(super) fn take_lowest(&mut self) {
+        for number in 0..self.runs.len() {
+            if self.runs[number].minimum.value < self.best().minimum.value {
+                self.winner = number;
+            }
+        }
     }
 
     /// The run that found the smallest value, of equal ones the first; or that which was chosen for its safety.
@@ -143,7 +150,7 @@ pub(super) fn each(
             turns.end(number);
             run
         };
-        starts.iter().enumerate().map(run).take_while(|_| turns.go_on()).collect()
+        starts.iter().enumerate().map(run).take_while(|_| turns.all_told()).collect()
     } else {
         let run = |(number, start): (usize, &Vec<f64>)| {
             let run = simplex(&objective, search, start, (journal, &stage), tell_of(number));
@@ -154,11 +161,9 @@ pub(super) fn each(
     };
     turns.check()?;
     let runs = runs.into_iter().collect::<Result<Vec<Run>, Error>>()?;
-    let smallest = |best: usize, other: usize| {
-        if runs[other].minimum.value < runs[best].minimum.value { other } else { best }
-    };
-    let winner = (0..runs.len()).reduce(smallest).unwrap_or(0);
-    Ok(Refined { objective, runs, winner, starts: starts.len(), beyond: Vec::new() })
+    let mut refined = Refined { objective, runs, winner: 0, starts: starts.len(), beyond: Vec::new() };
+    refined.take_lowest();
+    Ok(refined)
 }
 
 /// A whole design, in the order of the columns of its tables.

@@ -29,7 +29,7 @@ pub(super) fn tmd(study: &Study, search: &Search) -> Option<Vec<f64>> {
     let best = of.descend(&bounds, &valley).end.x;
     let stroke =
         of.evaluate(&of.scene(&best).ok()?, f64::INFINITY).ok()?.reached.get(Limit::Of(Measure::Stroke));
-    let mut tmd: Vec<f64> = search.variables.iter().map(|variable| variable.get(&search.damper)).collect();
+    let mut tmd = search.own();
     for (&i, &value) in springs.iter().zip(&best) {
         tmd[i] = value;
     }
@@ -51,7 +51,7 @@ pub(super) fn best_steady(study: &Study, search: &Search) -> Option<(Vec<f64>, F
     let springs = |variable: &Parameter| matches!(variable, Parameter::K2 | Parameter::C2);
     let bounds = &search.options.bounds;
     // Another parameter, as the mass, begins at that of the study.
-    let mut start: Vec<f64> = search.variables.iter().map(|variable| variable.get(&search.damper)).collect();
+    let mut start = search.own();
     let which: Vec<usize> = (0..start.len()).filter(|&i| springs(&search.variables[i])).collect();
     let alone = searched(study, search, &which.iter().map(|&i| search.variables[i]).collect::<Vec<_>>());
     let own: Vec<_> = which.iter().map(|&i| bounds[i]).collect();

@@ -41,11 +41,6 @@ impl<T: FnMut(usize, &Row, &[f64]) -> Result<(), Error>> Turns<T> {
         if state.told.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }
 
-    /// Whether all could be told so far.
-    pub fn go_on(&self) -> bool {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).told.is_ok()
-    }
-
     /// A run has ended: it is the turn of the next one that has not.
     pub fn end(&self, run: usize) {
         let state = &mut *self.0.lock().unwrap_or_else(PoisonError::into_inner);
@@ -57,6 +52,11 @@ impl<T: FnMut(usize, &Row, &[f64]) -> Result<(), Error>> Turns<T> {
                 state.tell(&row, &design);
             }
         }
+    }
+
+    /// Whether all could be told so far.
+    pub fn all_told(&self) -> bool {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).told.is_ok()
     }
 
     /// The same, when all runs have ended.

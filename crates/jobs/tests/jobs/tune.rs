@@ -258,7 +258,7 @@ fn contract_a_coarse_grid_leads_to_the_starts_of_an_exact_one() {
     verified::holds(&desk, "out", 7);
 }
 
-/// Retune once ended at 4.5 J where the damper of the study itself, within all bounds, had 0.7: its grid was elsewhere.
+/// Once a search ended far above the damper of its study, within all bounds, because its grid was elsewhere.
 #[test]
 fn contract_no_answer_is_above_the_damper_of_the_study() {
     let desk = Desk::with(&tiny());
@@ -283,7 +283,7 @@ fn contract_no_answer_is_above_the_damper_of_the_study() {
     assert!(record.all().contains(words), "{}", record.all());
 }
 
-/// Once "flat" was said of the gap D from 0 on, where the value at 0 was lower by 39 %: what is looked at about the answer counts.
+/// Once "flat" was said of the gap D from 0 on, where the value at 0 was far lower: what is looked at about the answer counts.
 #[test]
 fn contract_a_lower_place_beside_the_answer_is_taken() {
     let mut study = tiny();

@@ -52,6 +52,11 @@ fn with_loss_of(scene: Scene, other: &Scene) -> Scene {
 }
 
 impl Evaluation {
+    /// The frequency of the worst run, rad/s; none of a pulse or a record, or of a constant force.
+    pub fn worst_omega(&self) -> Option<f64> {
+        Some(self.worst.scene.forcing.frequency.get()).filter(|omega| *omega > 0.0)
+    }
+
     /// The scene of the worst run: `scene` at its record, ω, k1 and restitution, without the parameter errors of an ensemble member and
     /// with the force starting at a crest.
     pub fn worst_run(&self, mut scene: Scene, goal: &Goal) -> Scene {

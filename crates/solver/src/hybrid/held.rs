@@ -17,7 +17,6 @@ pub(super) struct RigidWalls {
 
 impl RigidWalls {
     /// Those of a system, in steps of at most `longest` seconds; none if it has no rigid walls.
-    #[inline(never)]
     pub(super) fn of(system: &Coupled, longest: f64) -> Option<Box<Self>> {
         let restitution = system.restitution()?;
         Some(Box::new(Self { restitution, held: Flow::new(held(system), longest) }))

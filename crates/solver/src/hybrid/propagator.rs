@@ -94,7 +94,6 @@ pub(super) struct ReducedFlight {
 }
 
 impl ReducedFlight {
-    #[inline(never)]
     fn of(system: &Coupled, whole: &Flow<4>, longest: f64) -> Option<Box<Self>> {
         let flow = Reduced::of(whole, longest)?;
         let fourth = derivative_bounds_of::<_, 4, 5>(system, flow.flow.linear(), STROKE)[4];

@@ -27,7 +27,6 @@ enum Lengths<const N: usize> {
 
 impl<const N: usize> Pieces<N> {
     /// Those of a force that has samples. None where equidistant ones are farther apart than a step of the flow is long.
-    #[inline(never)]
     pub fn of(force: Option<SampledForce>, flow: &Flow<N>) -> Option<Self> {
         let force = force?;
         let lengths = match force.even() {

@@ -71,7 +71,7 @@ impl LossyRules {
         }
     }
 
-    /// Those of a restitution. Not inlined: rules are made in arrays of a quarter of a megabyte, which every run would have on its stack.
+    /// Those of a restitution. Not inlined: rules are made in large arrays, which every run would have on its stack.
     #[inline(never)]
     fn restoring(law: &Arc<Restoring>) -> Arc<Self> {
         RESTORING.of(law.restitution(), || Self::new(&UnitLaw::Restoring(Arc::clone(law))))
