@@ -144,7 +144,7 @@ impl Optimum {
             baseline: baseline(&study.scene),
             study: Amount::of(quantity, "_study", study.energy(&study.scene).unwrap_or(f64::NAN)),
             objective: (!study.objective().is_default()).then(|| Goal::new(study, &evaluation)),
-            on_bound: notes::on_bound(search, best),
+            on_bound: notes::on_bound(search, best, &valleys),
             on_edge: surf.map(|surf| notes::on_edge(search, surf)).unwrap_or_default(),
             limits: LimitNote::new((study, search), &evaluation, surf, explored, refined),
             surf: surf.map(|surf| GridBest {

@@ -11,6 +11,8 @@ const TUNINGS: [[f64; 2]; 2] = [[0.03, 30.0], [0.03, 300.0]];
 const OPEN: f64 = 4.0;
 /// Share of a gap that a stroke may have.
 const FREE: f64 = 0.999;
+/// Share of a gap that stands where the limit of the cavity is why it is no wider, so that one built a little wider keeps it, if the stroke leaves as much.
+const WITHIN: f64 = 0.99;
 
 /// The tuned parameters of that TMD; none of a damper without walls, of one that is tuned as a TMD anyway, or where it cannot be computed.
 pub(super) fn tmd(study: &Study, search: &Search) -> Option<Vec<f64>> {
@@ -18,7 +20,8 @@ pub(super) fn tmd(study: &Study, search: &Search) -> Option<Vec<f64>> {
     if search.damper.contact.is_none() || goal.objective.is_steady() {
         return None;
     }
-    let gaps = gaps(search, goal.limits.get(Limit::Cavity));
+    let cavity = goal.limits.get(Limit::Cavity);
+    let gaps = gaps(search, cavity);
     let room = FREE * gaps[0].min(gaps[1]);
     let springs: Vec<usize> = (0..search.variables.len())
         .filter(|&i| matches!(search.variables[i], Parameter::K2 | Parameter::C2))
@@ -33,9 +36,15 @@ pub(super) fn tmd(study: &Study, search: &Search) -> Option<Vec<f64>> {
     for (&i, &value) in springs.iter().zip(&best) {
         tmd[i] = value;
     }
+    let is_tight = cavity.is_some_and(|cavity| gaps[0] + gaps[1] > WITHIN * cavity);
     for (variable, gap) in [Parameter::D, Parameter::C].into_iter().zip(gaps) {
         if let Some(i) = search.variables.iter().position(|other| *other == variable) {
-            tmd[i] = if gap.is_finite() { gap } else { tmd[i].max(OPEN * stroke) };
+            let least = search.options.bounds[i].lower.unwrap_or(0.0);
+            tmd[i] = match gap {
+                f64::INFINITY => tmd[i].max(OPEN * stroke),
+                _ if is_tight => gap.min((WITHIN * gap).max(stroke / FREE).max(least)),
+                _ => gap,
+            };
         }
     }
     Some(tmd)

@@ -109,13 +109,18 @@ impl Valley {
         }
     }
 
+    /// Whether the range is wide.
+    pub(crate) fn is_flat(&self) -> bool {
+        self.to - self.from > FLAT * self.own.abs() && !is_no_gap(self.variable, self.to)
+    }
+
     /// A flat direction in words, its ends rounded to the inside; none of a parameter that matters.
     pub(crate) fn words(&self) -> Option<String> {
-        let Self { variable, from, to, open, own } = self;
-        let (name, unit) = (variable.symbol(), variable.unit());
-        if to - from <= FLAT * own.abs() || is_no_gap(*variable, *to) {
+        if !self.is_flat() {
             return None;
         }
+        let Self { variable, from, to, open, .. } = self;
+        let (name, unit) = (variable.symbol(), variable.unit());
         let [low, high] = [inward(*from, f64::ceil), inward(*to, f64::floor)].map(short);
         // Beyond the last step it was not looked.
         let least = if *open { "at least " } else { "" };

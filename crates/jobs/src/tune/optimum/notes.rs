@@ -3,6 +3,7 @@
 use super::super::global::Explored;
 use super::super::refine::{Refined, Run};
 use super::super::surf::Surf;
+use super::super::valley::Valley;
 use retune_model::Scene;
 use retune_optim::{Bounds, Evaluation, FrequencyBand, Limit, Limits, Objective, Parameter, Response};
 use retune_study::{Search, Study};
@@ -133,11 +134,14 @@ pub(super) fn on_edge(search: &Search, surf: &Surf) -> Vec<Parameter> {
 }
 
 /// Parameters that ended on a bound: to a thousandth of the larger of their first and last value, or to within rounding
-/// of the distance between the bounds.
-pub(super) fn on_bound(search: &Search, run: &Run) -> Vec<Met> {
+/// of the distance between the bounds. One in whose direction the objective is flat could as well have ended elsewhere: its bound costs nothing.
+pub(super) fn on_bound(search: &Search, run: &Run, valleys: &[Valley]) -> Vec<Met> {
     let Some(first) = run.rows.first() else { return Vec::new() };
     let ended = |i: usize| {
         let variable = search.variables[i];
+        if valleys.iter().any(|valley| valley.variable == variable && valley.is_flat()) {
+            return None;
+        }
         let bound = met(run.minimum.x[i], first.best[i], search.options.bounds[i])?;
         Some(Met { variable, bound })
     };
