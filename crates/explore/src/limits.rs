@@ -29,6 +29,8 @@ pub const MOST_PARTS: f64 = 1e6;
 pub const MOST_SAMPLES: usize = 601;
 /// Runs behind one value of an objective that is tuned from the page.
 pub const MOST_RUNS: usize = 20_000;
+/// Runs behind one value in a descent, which cannot be stopped on its way.
+pub const MOST_RUNS_OF_DESCENT: usize = 500;
 /// Runs and motions of a search for branches.
 pub const MOST_MOTIONS: u64 = 20_000;
 /// Evaluations of a tuning.

@@ -1,12 +1,13 @@
-//! Tune from here: the refinement of the study's search from the design of the page, with its log, over a map of what it makes small.
+//! Tune from here: the refinement of the study's search from the design of the page, with its log, over a map of what it makes small; and a
+//! descent by derivatives from its end, as in `retune optimize`.
 
-use crate::limits::{MOST_EVALUATIONS, MOST_RUNS};
+use crate::limits::{MOST_EVALUATIONS, MOST_RUNS, MOST_RUNS_OF_DESCENT};
 use crate::protocol::{Answer, Place};
 use crate::refused::Refused;
 use crate::start::Start;
 use retune_jobs::tune::{log, objective::searched};
 use retune_model::Parameter;
-use retune_optim::{DesignObjective, Objective, Response, Scale, Stop, minimize, value_of};
+use retune_optim::{DesignObjective, Foot, Objective, Response, Scale, Stop, minimize, value_of};
 use retune_study::{Search, Study, rounded};
 use std::ops::ControlFlow;
 
@@ -50,7 +51,19 @@ pub fn tune(
         if let Some(map) = &map {
             scope.spawn(|| map.draw(&objective, &first, send, is_stale));
         }
-        let found = refine(&objective, &search, &first, send, &is_over);
+        let mut found = refine(&objective, &search, &first, send, &is_over);
+        if let Ok(found) = &mut found
+            && found.stop == Stop::Converged
+            && objective.goal().has_pieces()
+            && runs <= MOST_RUNS_OF_DESCENT
+        {
+            // In a kink, where several peaks are equally high, a simplex stops before it arrives.
+            let Foot { end, counts, .. } = objective.descend(&search.options.bounds, &found.x);
+            found.func_count += counts.evaluations;
+            if end.value < found.value {
+                (found.x, found.value) = (end.x, end.value);
+            }
+        }
         finished.store(true, std::sync::atomic::Ordering::SeqCst);
         let found = found.map_err(Refused::whole)?;
         let damper = objective.damper(&found.x).map_err(Refused::whole)?;
