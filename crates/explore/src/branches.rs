@@ -1,4 +1,4 @@
-//! Every periodic motion over the band, stable or not, that runs from many starts lead to: what the curves of runs from rest do not show.
+//! Every periodic motion over the band, stable or not, that runs from many starts lead to. The curves of runs from rest do not show these.
 
 use crate::limits::{MOST_MOTIONS, of_periods};
 use crate::protocol::Answer;
@@ -10,19 +10,19 @@ use retune_study::{Study, rounded};
 use serde_json::{Map, Value, json};
 use std::sync::atomic::{AtomicU64, Ordering::SeqCst};
 
-/// Frequencies at which runs are started from rest: as many as `retune branches` has if not told otherwise, like the next.
+/// Frequencies at which runs are started from rest. This and [`STARTS`] are the defaults of `retune branches`.
 pub const SAMPLES: usize = 31;
-/// Other starts over the band for each of these frequencies.
+/// Other starts, spread over the band, per such frequency.
 pub const STARTS: usize = 16;
-/// Most events of one kind that are marked on a branch: a cascade has any number of them.
+/// Most events of one kind marked on a branch; a cascade has any number of them.
 const MOST_EVENTS: usize = 40;
 
-/// How far the search is.
+/// The answer that reports the progress of the search.
 pub fn progress(done: u64) -> Answer {
     Answer::new("following").with("done", done).with("of", SAMPLES)
 }
 
-/// The motions of a study over its band; `send` receives how far the search is.
+/// Follows the motions of a study over its band; `send` receives progress.
 ///
 /// # Errors
 /// The work has become stale.
@@ -65,8 +65,8 @@ pub fn follow(
     })
 }
 
-/// The motions as curves, one after the other with a gap between them, and the events on them: `value` is that of the study's quantity, and
-/// every quantity has its own column by its name.
+/// Adds the branches as curves, separated by NaN, with their events: `value` is the study's quantity, and every quantity has a column of
+/// its name.
 fn drawn(answer: Answer, found: &Branches, measure: Measure) -> Answer {
     let mut columns: [Vec<f64>; 3 + Measure::ALL.len()] = Default::default();
     let mut push = |row: [f64; 3 + Measure::ALL.len()]| {
@@ -93,7 +93,7 @@ fn drawn(answer: Answer, found: &Branches, measure: Measure) -> Answer {
         .fold(answer.with("events", events), |answer, (name, column)| answer.column(name, column))
 }
 
-/// The kind of each event, its frequency and the value there; then that of each quantity.
+/// The kind of each event, its frequency, the value there, and the value of each quantity.
 fn events(branch: &Branch, measure: Measure) -> Vec<Value> {
     let of = |kind: EventKind| branch.events.iter().filter(move |event| event.kind == kind).take(MOST_EVENTS);
     let words = |event: &Event| {

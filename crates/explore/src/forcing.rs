@@ -1,10 +1,10 @@
-//! What moves the structure, over time: the curve under the motion.
+//! The forcing over time: the curve under the motion.
 
 use crate::thin::{Thin, Thinning};
 use retune_model::{Amplitude, Course, Forcing, History, Of, Source};
 use serde_json::{Value, json};
 
-/// What is drawn of a forcing: its words and its unit; none of a free decay.
+/// The name, description and unit of a forcing's curve; none for a free decay.
 pub fn forced(forcing: &Forcing) -> Option<Value> {
     let (name, words, unit) = match forcing.source {
         Source::Harmonic(Amplitude::BaseAcceleration, _)
@@ -18,11 +18,11 @@ pub fn forced(forcing: &Forcing) -> Option<Value> {
     Some(json!({ "name": name, "words": words, "unit": unit }))
 }
 
-/// Points of a pulse, and of a column of pixels of a harmonic.
-const FINE: usize = 128;
-const SHARP: usize = 4;
+/// Points of a pulse, and points of a harmonic per pixel column.
+const PULSE_POINTS: usize = 128;
+const POINTS_PER_COLUMN: usize = 4;
 
-/// Its curve over a span of time, s, thinned to columns of pixels: every sample of a record is looked at.
+/// The curve of a forcing over a span of time, s, thinned to pixel columns. Every sample of a record counts.
 pub fn curve(forcing: &Forcing, [from, to]: [f64; 2], columns: usize) -> Thin<1> {
     let mut thinning = Thinning::new([from, to], columns);
     thinning.push(from, [forcing.at(from)]);
@@ -35,11 +35,11 @@ pub fn curve(forcing: &Forcing, [from, to]: [f64; 2], columns: usize) -> Thin<1>
         (0..=count).map(move |i| from + i as f64 / count as f64 * (to - from))
     };
     match forcing.history().map(|history| &history.course) {
-        None => even(SHARP * columns, [from, to]).for_each(|t| push(t, forcing.at(t))),
+        None => even(POINTS_PER_COLUMN * columns, [from, to]).for_each(|t| push(t, forcing.at(t))),
         Some(course @ Course::Pulse(_)) => {
             let end = course.end();
-            even(FINE, [0.0, end]).for_each(|t| push(t, course.at(t)));
-            push(end, 0.0); // where it falls at once
+            even(PULSE_POINTS, [0.0, end]).for_each(|t| push(t, course.at(t)));
+            push(end, 0.0); // a pulse may end in a jump
         }
         Some(course) => {
             let Some(samples) = course.samples() else { return thinning.finish() };
@@ -60,7 +60,7 @@ mod tests {
         serde_json::from_value(text).expect("a forcing")
     }
 
-    /// A hundred samples in each column of pixels: the largest and the smallest stay; a rectangle falls at once.
+    /// With a hundred samples per pixel column the largest and the smallest are kept; a rectangle ends in a jump.
     #[test]
     fn invariant_every_peak_of_a_record_is_drawn() {
         let rows: String = (0..10_000)

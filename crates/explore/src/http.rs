@@ -1,5 +1,5 @@
-//! Who may ask: the guards of the server. A request must name this server as its host (a name that was rebound to the loopback address
-//! does not), come from its own page, and know the token of the address.
+//! Access control. A request must name this server as its host (which defeats DNS rebinding), come from its own page, and know the
+//! token in the address.
 
 use crate::limits::MOST_BYTES;
 use crate::page::{FILES, File};
@@ -16,21 +16,21 @@ pub struct Head {
     key: Option<String>,
 }
 
-/// What becomes of a request.
+/// The response to a request.
 #[derive(Clone, Copy, Debug)]
 pub enum Verdict<'a> {
-    /// It gets a file; of a HEAD request no bytes.
+    /// A file; without its bytes for a HEAD request.
     File(&'static File, bool),
-    /// It becomes a socket, with this key.
+    /// A WebSocket, with this key.
     Socket(&'a str),
-    /// It is refused, with a status and the reason.
+    /// A refusal: status and reason.
     Refused(&'static str, &'static str),
 }
 
-/// Reads a head; none while it is not whole.
+/// Parses a head and its length; none while it is incomplete.
 ///
 /// # Errors
-/// It is none, or it is too long.
+/// It is malformed or too long.
 pub fn head(bytes: &[u8]) -> Result<Option<(Head, usize)>, &'static str> {
     let mut headers = [httparse::EMPTY_HEADER; 64];
     let mut request = httparse::Request::new(&mut headers);
@@ -54,7 +54,7 @@ pub fn head(bytes: &[u8]) -> Result<Option<(Head, usize)>, &'static str> {
             "sec-websocket-key" => &mut head.key,
             _ => continue,
         };
-        // Said twice it is said in two ways.
+        // A repeated header would be ambiguous.
         if place.is_some() {
             return Err("400 Bad Request");
         }
@@ -64,7 +64,7 @@ pub fn head(bytes: &[u8]) -> Result<Option<(Head, usize)>, &'static str> {
 }
 
 impl Head {
-    /// What becomes of it at a port, for whoever knows the token.
+    /// The response at a port whose address has this token.
     pub fn verdict(&self, port: u16, token: &str) -> Verdict<'_> {
         let hosts = ["127.0.0.1", "localhost"].map(|name| format!("{name}:{port}"));
         let Some(host) = hosts.iter().find(|host| self.host.as_deref() == Some(host.as_str())) else {
@@ -75,7 +75,7 @@ impl Head {
             return Verdict::Refused("403 Forbidden", "the request comes from another page");
         }
         let known = self.path.strip_prefix('/').and_then(|path| path.split_once('/'));
-        let Some(name) = known.and_then(|(key, name)| same(key, token).then_some(name)) else {
+        let Some(name) = known.and_then(|(key, name)| constant_time_eq(key, token).then_some(name)) else {
             return Verdict::Refused("403 Forbidden", "open the address that `retune explore` printed");
         };
         let sends = match self.method.as_str() {
@@ -98,15 +98,15 @@ impl Head {
     }
 }
 
-/// Whether two words are the same, in a time that does not tell where they differ.
-fn same(one: &str, other: &str) -> bool {
+/// Compares two words in a time that does not depend on where they differ.
+fn constant_time_eq(one: &str, other: &str) -> bool {
     let differ = one.bytes().zip(other.bytes()).fold(0, |differ, (a, b)| differ | (a ^ b));
     one.len() == other.len() && differ == 0
 }
 
 /// The head of an answer.
 pub fn answer(status: &str, kind: &str, length: usize) -> String {
-    // Nothing from elsewhere, no frames, nothing kept.
+    // No foreign resources, no frames, no caching.
     format!(
         "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\nConnection: close\r\n\
          Content-Security-Policy: default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; \

@@ -1,4 +1,4 @@
-//! What kind of motion a run settles to; where it is irregular, how far its neighbours spread.
+//! The kind of motion that a run settles to and, if it is irregular, the spread of neighbouring runs.
 
 use crate::limits::{of_periods, rows};
 use crate::motion::{CRESTS, period};
@@ -13,11 +13,11 @@ use retune_optim::Ensemble;
 use retune_solver::{Sample, Window, trajectory};
 use retune_study::{Study, rounded};
 
-/// Neighbours of an irregular motion: k1, k2, c2, D and C within 0.1 %. Each begins at a crest of the force, as the motion itself.
+/// Neighbours of an irregular motion: k1, k2, c2, D and C within 0.1 %. Like the motion itself, each begins at a crest of the force.
 const NEIGHBOURS: Ensemble =
     Ensemble { members: 24, phases: false, errors: 1e-3, statistic: retune_optim::Statistic::Worst, seed: 0 };
 
-/// The motion of a study once it has settled: its kind, and the states at crests of the force.
+/// The kind of the settled motion of a study, and its states at crests of the force; also whether it is irregular.
 pub fn kind(study: &Study) -> (Answer, bool) {
     let answer = Answer::new("motion kind");
     let scene = &study.scene;

@@ -1,8 +1,8 @@
-//! A live explorer in the browser: turn a damper, and its motion, its impacts and its response follow.
+//! A live explorer in the browser: change a damper, and its motion, impacts and response are updated.
 //!
-//! [`explore`] serves one page on the loopback address. What a page shows is a study with its numbers changed ([`start::Start`]), by the
-//! rules of study files; what it shows of a run is what `retune simulate` prints. [`protocol`] has every message, [`limits`] what bounds
-//! the work of one. The latest message of a page wins: work for an older one is cancelled, and nothing is queued ([`session`]).
+//! [`explore`] serves one page on the loopback address. A page shows a study with changed numbers ([`start::Start`]), by the rules of
+//! study files; its figures of a run are those that `retune simulate` prints. [`protocol`] defines every message, [`limits`] the bounds
+//! on the work of one. The latest message of a page wins: work for an older one is cancelled, and nothing is queued ([`session`]).
 //!
 //! Read [`protocol`] first, then [`session`], then what is computed: [`motion`], [`response`], [`branches`], [`kind`],
 //! [`tuning`].

@@ -1,42 +1,42 @@
-//! What bounds the work of one message. A study may ask for more in a file; a page that follows a slider may not.
+//! Limits on the work of one message. A study file may ask for more; a page that follows a slider may not.
 
 use crate::refused::Refused;
 use retune_solver::{Rows, Settings};
 use retune_study::Study;
 use std::f64::consts::TAU;
 
-/// Bytes of a message, and of the head of a request.
+/// Most bytes of a message, and of the head of a request.
 pub const MOST_BYTES: usize = 16 << 10;
-/// Bytes of a message with a record.
+/// Most bytes of a message with a record.
 pub const MOST_RECORD: usize = 4 << 20;
-/// Pages at once.
+/// Most pages at once.
 pub const MOST_PAGES: usize = 16;
-/// Columns of pixels of a time series.
+/// Most pixel columns of a time series.
 pub const MOST_COLUMNS: usize = 2000;
-/// Periods of the force, or of the structure, in a run.
+/// Most periods of the force, or of the structure, in a run.
 pub const MOST_PERIODS: f64 = 4000.0;
-/// Seconds of a run.
+/// Longest run, s.
 pub const MOST_SECONDS: f64 = 20_000.0;
-/// Steps of a run.
+/// Most steps of a run.
 pub const MOST_STEPS: u64 = 500_000;
-/// Steps of a period of the force, where a run goes from period to period.
+/// Most steps per period of the force in a run that goes from period to period.
 pub const MOST_STEPS_OF_A_PERIOD: u64 = 2_000;
-/// Rows of a motion, beside those of its contacts and maxima.
+/// Most rows of a motion, not counting those of its contacts and maxima.
 pub const MOST_ROWS: f64 = 200_000.0;
-/// Parts of a run of which a page may show one.
+/// The shortest span that a page may show is a run's length divided by this.
 pub const MOST_PARTS: f64 = 1e6;
-/// Frequencies of a response curve.
+/// Most frequencies of a response curve.
 pub const MOST_SAMPLES: usize = 601;
-/// Runs behind one value of an objective that is tuned from the page.
+/// Most runs behind one value of an objective tuned from the page.
 pub const MOST_RUNS: usize = 20_000;
-/// Runs behind one value in a descent, which cannot be stopped on its way.
+/// Most runs behind one value in a descent, which cannot be stopped on its way.
 pub const MOST_RUNS_OF_DESCENT: usize = 500;
-/// Runs and motions of a search for branches.
+/// Most runs and motions of a search for branches.
 pub const MOST_MOTIONS: u64 = 20_000;
-/// Evaluations of a tuning.
+/// Most evaluations of a tuning.
 pub const MOST_EVALUATIONS: u64 = 20_000;
 
-/// The span that is shown, s: within the run, and the window where it is beyond the end of the run or none was asked for.
+/// The span to show, s: the one asked for, cut at the end of the run; the window if none is asked for or nothing is left.
 ///
 /// # Errors
 /// It is too short a part of the run.
@@ -70,13 +70,13 @@ pub fn rows([from, to]: [f64; 2], interval: f64, events: bool) -> Result<Rows, R
     Err(Refused::of("span", problem))
 }
 
-/// The settings of runs that go from period to period, each of which may take so many steps as a whole run otherwise.
+/// The settings of runs that go from period to period: their limit on steps applies to each period, so it is lower.
 pub fn of_periods(study: &Study) -> Settings {
     let settings = study.solver.settings();
     Settings { max_steps: settings.max_steps.min(MOST_STEPS_OF_A_PERIOD), ..settings }
 }
 
-/// The study with no more steps than a message may ask for.
+/// The study with its steps limited to what a message may ask for.
 ///
 /// # Errors
 /// Its run is too long.

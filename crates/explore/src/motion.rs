@@ -13,16 +13,16 @@ use retune_study::{Study, rounded};
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 
-/// Periods that are drawn moving.
-const DRAWN: f64 = 12.0;
-/// Rows of a period of what is drawn moving.
-const FINE: f64 = 96.0;
-/// Rows of a period, at least, that time series are thinned from. Contacts and maxima of E1 are rows of their own.
-const ROWS: f64 = 48.0;
-/// Rows of a column of pixels.
-const SHARP: f64 = 2.0;
+/// Periods of the force in the animation.
+const ANIMATED_PERIODS: f64 = 12.0;
+/// Rows per period in the animation.
+const ANIMATED_ROWS: f64 = 96.0;
+/// Least rows per period from which time series are thinned. Contacts and maxima of E1 are additional rows.
+const ROWS_PER_PERIOD: f64 = 48.0;
+/// Rows per pixel column before thinning.
+const ROWS_PER_COLUMN: f64 = 2.0;
 
-/// A period of the force, s; of the structure alone where nothing periodic moves it.
+/// The period of the force, s; of the structure alone if the forcing is not periodic.
 pub fn period(study: &Study) -> f64 {
     let omega = study.scene.forcing.frequency.get();
     let own = study.scene.primary.natural_frequency();
@@ -30,15 +30,17 @@ pub fn period(study: &Study) -> f64 {
     if omega > 0.0 { TAU / omega } else { fallback }
 }
 
-/// Runs the study; the time series are those of `span`, s, in `columns` pixels.
+/// Runs the study; the time series cover `span`, s, in `columns` pixels.
 ///
 /// # Errors
 /// The run fails, with the time reached.
 pub fn look(study: &Study, span: [f64; 2], columns: usize) -> Result<Answer, Refused> {
     let Window { from: t0, to: end } = study.window.window();
-    // Each is a run of its own; two at a time, because a page waits for them.
-    let (series, (simulation, drawn, crests)) =
-        rayon::join(|| series(study, span, columns), || (simulate(study, None), drawn(study), crests(study)));
+    // Each part makes its own run; two threads, because a page waits for them.
+    let (series, (simulation, animated, crests)) = rayon::join(
+        || series(study, span, columns),
+        || (simulate(study, None), animated(study), crests(study)),
+    );
     let simulation = simulation.map_err(Refused::whole)?;
     let Thin { t: moments, columns: [forcing] } = curve(&study.scene.forcing, span, columns);
     let (series, contacts) = series?;
@@ -54,7 +56,9 @@ pub fn look(study: &Study, span: [f64; 2], columns: usize) -> Result<Answer, Ref
         answer = answer.column(name, column);
     }
     answer = answer.column("forcing.t", &moments).column("forcing", &forcing);
-    for (name, column) in ["drawn.t", "drawn.x1", "drawn.v1", "drawn.x", "drawn.v"].into_iter().zip(&drawn?) {
+    for (name, column) in
+        ["drawn.t", "drawn.x1", "drawn.v1", "drawn.x", "drawn.v"].into_iter().zip(&animated?)
+    {
         answer = answer.column(name, column);
     }
     for (name, column) in CRESTS.into_iter().zip(&crests?) {
@@ -73,12 +77,14 @@ fn visit(
     trajectory(&study.scene, Window { from, to }, &settings, rows, visit).map_err(Refused::whole)
 }
 
-/// x1, x2 - x1, E1 and both contact forces over time, thinned to pixels; and where contacts are deepest, t and x2 - x1 in turn.
+/// x1, x2 - x1, E1 and both contact forces over time, thinned to pixels; and t and x2 - x1, alternating, at the largest force of each
+/// contact.
 ///
 /// # Errors
 /// The run fails.
 pub fn series(study: &Study, span: [f64; 2], columns: usize) -> Result<(Thin<5>, Vec<f64>), Refused> {
-    let interval = ((span[1] - span[0]) / (SHARP * columns as f64)).min(period(study) / ROWS);
+    let interval =
+        ((span[1] - span[0]) / (ROWS_PER_COLUMN * columns as f64)).min(period(study) / ROWS_PER_PERIOD);
     let (mut series, mut contacts) = (Thinning::new(span, columns), Thinning::new(span, columns));
     visit(study, span, (interval, true), &mut |row: &Sample| {
         let [x1, _, x2, _] = row.state;
@@ -91,15 +97,15 @@ pub fn series(study: &Study, span: [f64; 2], columns: usize) -> Result<(Thin<5>,
     Ok((series.finish(), t.into_iter().zip(places).flat_map(|(t, place)| [t, place]).collect()))
 }
 
-/// The last periods, of a transient the first: t, x1, v1, x2 - x1, v2 - v1.
-fn drawn(study: &Study) -> Result<[Vec<f64>; 5], Refused> {
+/// The animated motion: the last periods, or the first of a transient: t, x1, v1, x2 - x1, v2 - v1.
+fn animated(study: &Study) -> Result<[Vec<f64>; 5], Refused> {
     let (period, end) = (period(study), study.window.end.get());
     let mut columns: [Vec<f64>; 5] = Default::default();
     let span = match study.scene.forcing.is_transient() {
-        true => [0.0, end.min(DRAWN * period)],
-        false => [(end - DRAWN * period).max(0.0), end],
+        true => [0.0, end.min(ANIMATED_PERIODS * period)],
+        false => [(end - ANIMATED_PERIODS * period).max(0.0), end],
     };
-    visit(study, span, (period / FINE, false), &mut |row: &Sample| {
+    visit(study, span, (period / ANIMATED_ROWS, false), &mut |row: &Sample| {
         let [x1, v1, x2, v2] = row.state;
         columns
             .iter_mut()
@@ -126,14 +132,14 @@ fn crests(study: &Study) -> Result<[Vec<f64>; 4], Refused> {
 /// The columns with the states at crests of the force.
 pub const CRESTS: [&str; 4] = ["crest.x1", "crest.v1", "crest.x", "crest.v"];
 
-/// Where x2 - x1 is when the damper touches the structure and the obstacle, m; none without walls.
+/// x2 - x1 at touch-down on the structure and on the obstacle, m; none without walls.
 fn walls(study: &Study) -> Option<[f64; 2]> {
     let damper = study.scene.damper.filter(|damper| damper.contact.is_some())?;
     let system = Coupled::new(&study.scene.primary, &study.scene.forcing, &damper);
     Some(retune_model::Side::BOTH.map(|side| system.wall(side)))
 }
 
-/// The figures of a run that are shown large, to four digits: its largest values and its impacts.
+/// The main figures of a run, to four digits: its largest values and its impacts.
 pub fn figures(simulation: &Simulation) -> Value {
     let run = &simulation.summary;
     let mut figures = largest(|measure| run.largest(measure));
@@ -141,7 +147,7 @@ pub fn figures(simulation: &Simulation) -> Value {
     figures.into()
 }
 
-/// One of the figures, as text; a dash where it is none.
+/// One of the figures as text; a dash if there is none.
 pub fn look_up(figures: &Value, measure: Measure) -> String {
     figures.get(measure.name()).and_then(Value::as_str).unwrap_or("–").to_owned()
 }

@@ -1,9 +1,9 @@
-//! The page and all that it needs, built into the program: it works without a network.
+//! The page with all its files, built into the program: it works without a network.
 
 /// A file of the page.
 #[derive(Clone, Copy, Debug)]
 pub struct File {
-    /// Its name in the address.
+    /// Its name in the URL.
     pub name: &'static str,
     /// Its type.
     pub kind: &'static str,
@@ -57,7 +57,7 @@ mod tests {
         assert!(size <= 300_000, "{size} bytes");
     }
 
-    /// One palette: on the page it is that of all figures.
+    /// The page uses the palette of all figures.
     #[test]
     fn contract_the_colours_are_those_of_the_figures() {
         let (light, dark) = text("style.css").split_once("prefers-color-scheme: dark").expect("both");

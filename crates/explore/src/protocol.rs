@@ -19,13 +19,13 @@ pub enum DamperKind {
     Ssvi,
 }
 
-/// What a page looks at: the study of the session with another damper and other numbers.
+/// What a page shows: the study of the session with another damper and other numbers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Place {
     /// The damper.
     pub damper: DamperKind,
-    /// Numbers by the names of `--set`, SI units. What is left out is the study's.
+    /// Numbers by the names of `--set`, in SI units; those left out are the study's.
     pub set: BTreeMap<String, f64>,
 }
 
@@ -46,7 +46,7 @@ pub enum Message {
         /// Whether to follow every motion over the band, too.
         #[serde(default)]
         branches: bool,
-        /// What curves are of; what the study makes small if left out.
+        /// The quantity of the curves; what the study minimises if left out.
         #[serde(default)]
         quantity: Option<Measure>,
     },
@@ -56,7 +56,7 @@ pub enum Message {
         slot: usize,
         /// The design.
         place: Place,
-        /// What its curve is of, as of a look.
+        /// The quantity of its curve, as in `Look`.
         #[serde(default)]
         quantity: Option<Measure>,
     },
@@ -70,9 +70,9 @@ pub enum Message {
         /// Its fields: m1, f1, zeta, force, band, mass and so on.
         structure: BTreeMap<String, Value>,
     },
-    /// Move the structure by a pulse or a record, or again by what the study has.
+    /// Force the structure by a pulse or a record, or again by the study's own forcing.
     Force {
-        /// The fields of `scene.forcing`; none for that of the study.
+        /// The fields of `scene.forcing`; none for the study's own.
         forcing: Option<serde_json::Map<String, Value>>,
         /// The text of the file with the record.
         #[serde(default)]
@@ -80,11 +80,11 @@ pub enum Message {
     },
     /// End the tuning and keep its best design.
     Stop {},
-    /// Write this place down.
+    /// Export this place.
     Write(Write),
 }
 
-/// What is to be written down.
+/// An export of a place.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Write {
@@ -92,23 +92,23 @@ pub struct Write {
     pub place: Place,
     /// As what.
     pub what: What,
-    /// The pinned designs A and B, for what has them.
+    /// The pinned designs A and B, for forms that show them.
     #[serde(default)]
     pub pins: [Option<Place>; 2],
-    /// What curves are of, as of a look.
+    /// The quantity of the curves, as in `Look`.
     #[serde(default)]
     pub quantity: Option<Measure>,
 }
 
-/// Forms in which a place is written down. The page offers them as files; the server writes none.
+/// Forms of export. The page offers them as files; the server writes none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum What {
     /// A study file.
     Study,
-    /// The command line that makes the same run.
+    /// The command line that makes this run.
     Command,
-    /// The lines of Python that do.
+    /// Python code that makes this run.
     Python,
     /// The motion as `retune simulate --trajectory` writes it.
     Motion,
@@ -122,13 +122,13 @@ pub enum What {
     Report,
 }
 
-/// How a message begins that may hold a record.
+/// The beginning of a message that may hold a record.
 const RECORD: &str = "{\"force\":";
 
 /// Reads a message.
 ///
 /// # Errors
-/// It is too long, no message, or has a field that is out of range.
+/// It is too long, malformed, or has a field out of range.
 pub fn read(text: &str) -> Result<Message, Refused> {
     let most = if text.starts_with(RECORD) { MOST_RECORD } else { MOST_BYTES };
     if text.len() > most {
@@ -164,15 +164,15 @@ impl Answer {
         Self::default().with("kind", kind)
     }
 
-    /// With a field.
+    /// Adds a field.
     #[must_use]
     pub fn with(mut self, name: &str, value: impl Serialize) -> Self {
-        // What is not finite has no place in JSON and becomes null.
+        // JSON has no non-finite numbers: they become null.
         self.head.insert(name.to_owned(), serde_json::to_value(value).unwrap_or(Value::Null));
         self
     }
 
-    /// With a column of numbers.
+    /// Adds a column of numbers.
     #[must_use]
     pub fn column(mut self, name: &str, values: &[f64]) -> Self {
         self.names.push(serde_json::json!([name, values.len()]));
@@ -198,7 +198,7 @@ impl Answer {
     pub fn bytes(mut self) -> Vec<u8> {
         self.head.insert("columns".to_owned(), Value::Array(self.names));
         let mut head = Value::Object(self.head).to_string().into_bytes();
-        head.resize(head.len().next_multiple_of(8) + 4, b' '); // so that the numbers begin at a multiple of eight
+        head.resize(head.len().next_multiple_of(8) + 4, b' '); // aligns the numbers to eight bytes
         let mut bytes = (head.len() as u32).to_le_bytes().to_vec();
         bytes.append(&mut head);
         bytes.extend(self.numbers);

@@ -13,12 +13,12 @@ pub struct Refused {
 }
 
 impl Refused {
-    /// Because of a field.
+    /// Refuses because of a field.
     pub fn of(field: &str, problem: impl std::fmt::Display) -> Self {
         Self { field: Some(field.to_owned()), problem: format!("{field}: {problem}") }
     }
 
-    /// As a whole.
+    /// Refuses the message as a whole.
     pub fn whole(problem: impl std::fmt::Display) -> Self {
         Self { field: None, problem: problem.to_string() }
     }

@@ -1,4 +1,4 @@
-//! What the page shows as a page to keep: the figures, the curves, the motion, the run in words and the study, drawn as all results are.
+//! The page's contents as a report to keep: figures, curves, motion, summary of the run and study, in the style of all results.
 
 use crate::kind::kind;
 use crate::motion::{figures, look_up};
@@ -14,13 +14,13 @@ use retune_report::{Sheet, drawing};
 use retune_study::{Study, rounded};
 use serde_json::Value;
 
-/// What a report says beside what is computed for it.
+/// The parts of a report that are not computed for it.
 pub struct Said {
     /// The command line that makes the same run.
     pub command: String,
-    /// The study with what was changed, as a file.
+    /// The text of the study file with all changes.
     pub file: String,
-    /// What its curves are of; what the study makes small if left out.
+    /// The quantity of its curves; what the study minimises if left out.
     pub quantity: Option<Measure>,
 }
 
@@ -58,7 +58,7 @@ pub fn html(
     Ok(document.html())
 }
 
-/// The figures of the run, beside the worst of the band and the worst of the pinned designs.
+/// The figures of the run, beside the worst over the band and those of the pinned designs.
 fn numbers(
     study: &Study,
     run: &Simulation,

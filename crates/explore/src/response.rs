@@ -12,7 +12,7 @@ use serde_json::Value;
 /// Samples of the first curve, and of the final one.
 pub const CURVES: [usize; 2] = [31, 301];
 
-/// The work was for a message that another has replaced.
+/// The work was for a message that a newer one has replaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stale;
 
@@ -21,21 +21,21 @@ fn first(study: &Study) -> Objective {
     study.objective().terms().first().map(|(_, term)| (*term).clone()).unwrap_or_default()
 }
 
-/// Whether the study asks for the largest over all motions, where curves are of runs from rest.
+/// Whether the study asks for the largest value over all motions, while curves show runs from rest.
 pub fn of_all_motions(study: &Study) -> bool {
     first(study).response == Response::Motions
 }
 
-/// The first term at one frequency of the scene itself: no band, no other k1, no ensemble. Coexisting motions, a hundred times the work,
-/// are left to the branches: a curve is of runs from rest.
+/// The first term at one frequency of the scene itself: no band, no other k1, no ensemble. It covers runs from rest only; coexisting
+/// motions take a hundred times the work and are left to the branches.
 fn term(study: &Study) -> Objective {
     let first = first(study);
     let response = if first.response == Response::Motions { Response::Window } else { first.response };
     Objective { omega: None, k1: None, restitution: None, ensemble: None, response, ..first }
 }
 
-/// What a curve is of: of what the study makes small, the part of the response that its objective looks at; of any other quantity, all that
-/// a limit on it covers.
+/// The goal behind a curve. For the quantity that the study minimises it covers the same part of the response as the objective; for any
+/// other quantity, all that a limit on it covers.
 fn goal(study: &Study, quantity: Measure) -> Goal {
     let (own, mut window) = (term(study), study.window.window());
     if quantity == study.quantity() || own.response == Response::Steady {
@@ -50,12 +50,12 @@ fn limited_from(study: &Study) -> f64 {
     study.goal().limits.from.map_or(0.0, NonNegative::get)
 }
 
-/// The part of the response from a time on, s, in words.
+/// Describes the part of the response from a time (s) on.
 fn since(from: f64) -> String {
     if from > 0.0 { format!("from {} s on", short(from)) } else { "from rest on".to_owned() }
 }
 
-/// The part of the response that a curve is of, and the part that limits cover.
+/// Describes the part of the response that a curve covers, and the part that limits cover.
 pub fn parts(study: &Study, quantity: Measure) -> [String; 2] {
     let response = term(study).response;
     let limited = match response {
@@ -71,18 +71,18 @@ pub fn parts(study: &Study, quantity: Measure) -> [String; 2] {
     [own, limited]
 }
 
-/// What a curve may be of, with the limit of the study on it and the part of the response that each covers.
+/// A quantity that a curve may show, the study's limit on it, and the part of the response that each covers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Drawn {
     name: &'static str,
     unit: &'static str,
     words: &'static str,
-    /// Whether only a damper has it, and only one with walls.
+    /// Whether it exists only with a damper, and only with one that has walls.
     of_damper: bool,
     of_walls: bool,
-    /// The part of the response that the curve is of.
+    /// The part of the response that the curve covers.
     part: String,
-    /// The largest value allowed, and where.
+    /// The largest value allowed, and the part of the response where it applies.
     limit: Option<f64>,
     limit_part: String,
 }
@@ -126,7 +126,7 @@ pub fn bare(study: &Study) -> Study {
     Study { scene: Scene { damper: None, ..study.scene }, ..study.clone() }
 }
 
-/// What a curve is of: the measure of a study, at any frequency.
+/// A quantity of a study as a function of the frequency.
 #[derive(Clone, Debug)]
 pub struct Curve {
     goal: Goal,
@@ -134,13 +134,13 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// Of a quantity of a study.
+    /// The curve of a quantity.
     pub fn of(study: &Study, quantity: Measure) -> Self {
         Self { goal: goal(study, quantity), study: study.clone() }
     }
 
-    /// Of what a study makes small.
-    fn own(study: &Study) -> Self {
+    /// The curve of the quantity that the study minimises.
+    fn of_objective(study: &Study) -> Self {
         Self::of(study, study.quantity())
     }
 
@@ -172,13 +172,13 @@ impl Curve {
         Ok([(0..samples).map(|i| band.at(i)).collect(), values])
     }
 
-    /// The largest value over the band and its frequency, as `retune optimize` finds it; none where some frequency has no value.
+    /// The largest value over the band and its frequency, found as `retune optimize` does; none if some frequency has no value.
     ///
     /// # Errors
     /// The work has become stale.
     pub fn worst(&self, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<Option<[f64; 2]>, Stale> {
         if self.study.scene.forcing.is_transient() {
-            // One run is all there is.
+            // There is only one run.
             let value = self.at(0.0);
             return if is_stale() { Err(Stale) } else { Ok((!value.is_nan()).then_some([value, 0.0])) };
         }
@@ -211,17 +211,18 @@ impl Curve {
     }
 }
 
-/// The worst of a study over its band beside that without a damper, and the largest of every figure over the band, from rest on.
+/// The worst value of a study over its band, with and without its damper, and the largest value of every figure over the band, from rest
+/// on.
 ///
 /// # Errors
 /// The work has become stale.
 pub fn worst(study: &Study, whose: &str, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<Answer, Stale> {
-    let (found, none) = (Curve::own(study).worst(is_stale)?, without(study, is_stale)?);
+    let (found, none) = (Curve::of_objective(study).worst(is_stale)?, worst_without_damper(study, is_stale)?);
     let Some([value, omega]) = found else {
         let problem = "no value at some frequency of the band";
         return Ok(Answer::new("worst").with("whose", whose).with("problem", problem));
     };
-    let figures = largest(study, is_stale)?;
+    let figures = largest_values(study, is_stale)?;
     let reduction = none.map(|none| none / value).filter(|ratio| ratio.is_finite());
     Ok(Answer::new("worst")
         .with("whose", whose)
@@ -233,11 +234,11 @@ pub fn worst(study: &Study, whose: &str, is_stale: &(dyn Fn() -> bool + Sync)) -
         .with("figures", figures))
 }
 
-/// The worst without a damper; of the steady motion, where that is more than a window holds in which the structure alone has not settled. Where that
-/// with its damper has not either, both are of the window.
-fn without(study: &Study, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<Option<f64>, Stale> {
+/// The worst value without a damper. If the bare structure has not settled in the window while the study has, the steady motion counts too,
+/// since its maximum may be larger. If neither has settled, both values are those of the window.
+fn worst_without_damper(study: &Study, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<Option<f64>, Stale> {
     let bare = bare(study);
-    let found = Curve::own(&bare).worst(is_stale)?.map(|[value, _]| value);
+    let found = Curve::of_objective(&bare).worst(is_stale)?.map(|[value, _]| value);
     if bare.unsettled().is_none() || study.unsettled().is_some() {
         return Ok(found);
     }
@@ -247,8 +248,8 @@ fn without(study: &Study, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<Option
     Ok(found.map(|found| found.max(steady)).filter(|value| value.is_finite()))
 }
 
-/// The largest values over the band, each at its own frequency, as the figures of a run are shown; none where some frequency has no value.
-fn largest(study: &Study, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<Option<Value>, Stale> {
+/// The largest values over the band, each at its own frequency, in the form of a run's figures; none if some frequency has no value.
+fn largest_values(study: &Study, is_stale: &(dyn Fn() -> bool + Sync)) -> Result<Option<Value>, Stale> {
     let Band { from, to, samples } = band(study);
     let [Ok(from), Ok(to)] = [from, to].map(Positive::new) else { return Ok(None) };
     let omega =

@@ -1,4 +1,4 @@
-//! The server: it listens on the loopback address alone, and each connection has a thread of its own.
+//! The server: listens on the loopback address only, with one thread per connection.
 
 use crate::http::{self, Verdict};
 use crate::limits::{MOST_PAGES, MOST_RECORD};
@@ -16,9 +16,9 @@ use tungstenite::handshake::derive_accept_key;
 use tungstenite::protocol::{Role, WebSocketConfig};
 use tungstenite::{Message, WebSocket};
 
-/// How long the head of a request may take, and how long a page may not read.
-const PATIENCE: Duration = Duration::from_secs(10);
-/// Connections at once, files and pages.
+/// Time limit for receiving the head of a request, and for a page to accept data.
+const TIMEOUT: Duration = Duration::from_secs(10);
+/// Most connections at once, files and pages.
 const MOST_CONNECTIONS: usize = 4 * MOST_PAGES;
 
 /// The options of the command line.
@@ -26,7 +26,7 @@ const MOST_CONNECTIONS: usize = 4 * MOST_PAGES;
 pub struct Options {
     /// A study, an `optimum.json` or a directory of results; the paper's SSVI NES if none is named.
     pub study: Option<PathBuf>,
-    /// The port; any that is free if it is 0.
+    /// The port; 0 for any free one.
     pub port: u16,
     /// Whether the page is opened in a browser.
     pub browser: bool,
@@ -41,7 +41,7 @@ pub struct Options {
 pub fn explore(options: &Options, watch: &dyn Observer) -> Result<(), Error> {
     let server = Server::open(options)?;
     if let Some(threads) = options.threads {
-        // Of the process, whose pages share them; where it has some already, these stay.
+        // The pool belongs to the process and is shared by its pages; one that exists already stays.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global();
     }
     watch.result(&format!("{}\nends with Ctrl-C", server.address()))?;
@@ -60,7 +60,7 @@ pub struct Server {
     shared: Arc<Shared>,
 }
 
-/// What all connections know.
+/// What all connections share.
 struct Shared {
     start: Start,
     port: u16,
@@ -100,20 +100,20 @@ impl Server {
         self.shared.pages.load(SeqCst)
     }
 
-    /// Answers connections, for ever.
+    /// Answers connections forever.
     pub fn serve(&self) {
         for stream in self.listener.incoming() {
-            // A connection that failed before it began is gone; if no more are to be had, some will end.
+            // Either the connection failed before it began, or the process has no more handles until some close.
             let Ok(stream) = stream else {
                 std::thread::sleep(Duration::from_millis(20));
                 continue;
             };
             let shared = Arc::clone(&self.shared);
-            let Some(guard) = Counted::new(&shared, |shared| &shared.connections, MOST_CONNECTIONS) else {
+            let Some(guard) = Slot::new(&shared, |shared| &shared.connections, MOST_CONNECTIONS) else {
                 continue;
             };
             let connection = move || {
-                // What fails here is a page that went away.
+                // An error here means that the page was closed.
                 let _ = connection(stream, &guard.0);
             };
             let _ = std::thread::Builder::new().name("page".to_owned()).spawn(connection);
@@ -121,26 +121,26 @@ impl Server {
     }
 }
 
-/// One of a number of things that there may be at once.
-struct Counted(Arc<Shared>, fn(&Shared) -> &AtomicUsize);
+/// A slot in a limited number of connections or pages; dropping it frees it.
+struct Slot(Arc<Shared>, fn(&Shared) -> &AtomicUsize);
 
-impl Counted {
+impl Slot {
     fn new(shared: &Arc<Shared>, of: fn(&Shared) -> &AtomicUsize, most: usize) -> Option<Self> {
         let counted = Self(Arc::clone(shared), of);
         (of(shared).fetch_add(1, SeqCst) < most).then_some(counted)
     }
 }
 
-impl Drop for Counted {
+impl Drop for Slot {
     fn drop(&mut self) {
         (self.1)(&self.0).fetch_sub(1, SeqCst);
     }
 }
 
-/// Answers one request; of a socket, until the page goes.
+/// Answers one request; serves a WebSocket until the page is closed.
 fn connection(mut stream: TcpStream, shared: &Arc<Shared>) -> std::io::Result<()> {
     stream.set_nodelay(true)?;
-    stream.set_write_timeout(Some(PATIENCE))?;
+    stream.set_write_timeout(Some(TIMEOUT))?;
     let begun = Instant::now();
     let mut bytes = Vec::new();
     let (head, length) = loop {
@@ -149,7 +149,7 @@ fn connection(mut stream: TcpStream, shared: &Arc<Shared>) -> std::io::Result<()
             Err(status) => return refuse(&mut stream, status, "this is no request that is answered here"),
             Ok(None) => {}
         }
-        let left = PATIENCE.checked_sub(begun.elapsed()).filter(|left| !left.is_zero());
+        let left = TIMEOUT.checked_sub(begun.elapsed()).filter(|left| !left.is_zero());
         let Some(left) = left else { return Ok(()) };
         stream.set_read_timeout(Some(left))?;
         let mut more = [0; 4096];
@@ -165,7 +165,7 @@ fn connection(mut stream: TcpStream, shared: &Arc<Shared>) -> std::io::Result<()
             if sends { stream.write_all(file.bytes) } else { Ok(()) }
         }
         Verdict::Socket(key) => {
-            let Some(_page) = Counted::new(shared, |shared| &shared.pages, MOST_PAGES) else {
+            let Some(_page) = Slot::new(shared, |shared| &shared.pages, MOST_PAGES) else {
                 return refuse(&mut stream, "503 Service Unavailable", "too many pages are open");
             };
             let accept = derive_accept_key(key.as_bytes());
@@ -183,7 +183,7 @@ fn refuse(stream: &mut TcpStream, status: &str, words: &str) -> std::io::Result<
     stream.write_all(words.as_bytes())
 }
 
-/// A connection that two threads write to: each write is a whole number of frames, and goes out as one.
+/// A connection that two threads write to. Each write is a whole number of frames, sent under a lock.
 struct Duplex {
     read: TcpStream,
     write: Arc<Mutex<TcpStream>>,
@@ -205,8 +205,8 @@ impl Write for Duplex {
     }
 }
 
-/// Serves a page. One end of the socket reads and answers pings, the other sends.
-fn socket(stream: TcpStream, begun: Vec<u8>, start: &Start) -> std::io::Result<()> {
+/// Serves a page. One WebSocket reads and answers pings, another on the same stream sends.
+fn socket(stream: TcpStream, received: Vec<u8>, start: &Start) -> std::io::Result<()> {
     let config = WebSocketConfig::default()
         .read_buffer_size(4096)
         .write_buffer_size(0)
@@ -214,13 +214,13 @@ fn socket(stream: TcpStream, begun: Vec<u8>, start: &Start) -> std::io::Result<(
         .max_frame_size(Some(MOST_RECORD));
     let write = Arc::new(Mutex::new(stream.try_clone()?));
     let duplex = || Ok::<_, std::io::Error>(Duplex { read: stream.try_clone()?, write: Arc::clone(&write) });
-    let mut reader = WebSocket::from_partially_read(duplex()?, begun, Role::Server, Some(config));
+    let mut reader = WebSocket::from_partially_read(duplex()?, received, Role::Server, Some(config));
     let sender = Mutex::new(WebSocket::from_raw_socket(duplex()?, Role::Server, Some(config)));
     let send = |answer: Answer| {
         let message = Message::binary(answer.bytes());
         let sent = sender.lock().unwrap_or_else(PoisonError::into_inner).send(message).is_ok();
         if !sent {
-            let _ = stream.shutdown(Shutdown::Both); // so that the reader ends, too
+            let _ = stream.shutdown(Shutdown::Both); // ends the reader too
         }
         sent
     };
@@ -229,7 +229,7 @@ fn socket(stream: TcpStream, begun: Vec<u8>, start: &Start) -> std::io::Result<(
             match reader.read().ok()? {
                 Message::Text(text) => return Some(text.to_string()),
                 Message::Close(_) => return None,
-                _ => {} // a ping was answered; anything else the page does not send
+                _ => {} // pings are answered already; the page sends nothing else
             }
         }
     });

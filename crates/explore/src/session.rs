@@ -1,4 +1,4 @@
-//! One page: its messages come in, answers go out. The latest message of a kind wins; work for an older one ends at its next run.
+//! One page: receives its messages and sends answers. The latest message of a kind wins; work for an older one stops before its next run.
 
 use crate::kind::{kind, spread};
 use crate::limits::shown;
@@ -16,9 +16,9 @@ use std::sync::atomic::{AtomicU64, Ordering::SeqCst};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// How long the page is given to draw a motion before its response is computed, and how long a slider rests before what takes longer.
-const DRAWN: Duration = Duration::from_millis(12);
-const RESTED: Duration = Duration::from_millis(60);
+/// Delays after sending the motion: before the first response curve, so that the page can draw, and before slower work, until sliders rest.
+const DRAW_DELAY: Duration = Duration::from_millis(12);
+const IDLE_DELAY: Duration = Duration::from_millis(60);
 
 struct Look {
     id: u64,
@@ -45,21 +45,21 @@ struct Mail {
 
 /// A page.
 pub struct Session<'a> {
-    /// What it starts from, until the page begins with another structure.
+    /// The study in use; replaced when the page chooses another structure or forcing.
     start: Mutex<Arc<Start>>,
-    /// The same under its own forcing.
-    own: Mutex<Arc<Start>>,
+    /// The same structure with its own forcing.
+    original: Mutex<Arc<Start>>,
     send: &'a (dyn Fn(Answer) -> bool + Sync),
     mail: Mutex<Mail>,
-    bell: Condvar,
-    /// Counts messages that outdate what is being shown, and those that outdate a tuning.
-    shown: AtomicU64,
-    tuned: AtomicU64,
+    wake: Condvar,
+    /// Counts messages that make the current display stale, and those that make a tuning stale.
+    display_count: AtomicU64,
+    tuning_count: AtomicU64,
 }
 
-/// What the page has been sent, and need not be sent again.
+/// What the page has been sent and need not be sent again.
 #[derive(Default)]
-struct Known {
+struct Sent {
     bare: Option<(Study, Measure)>,
     response: Option<(Study, Measure)>,
     kind: Option<(Study, bool)>,
@@ -67,22 +67,22 @@ struct Known {
     branches: Option<Study>,
 }
 
-/// Serves a page until `next` has no more messages. `send` is false once the page has gone.
+/// Serves a page until `next` has no more messages. `send` returns false once the page is closed.
 pub fn serve(
     start: &Start,
     send: &(dyn Fn(Answer) -> bool + Sync),
     mut next: impl FnMut() -> Option<String>,
 ) {
-    let (mail, bell, shown, tuned) = Default::default();
-    let [begun, own] = [(), ()].map(|()| Mutex::new(Arc::new(start.clone())));
-    let session = Session { start: begun, own, send, mail, bell, shown, tuned };
+    let (mail, wake, display_count, tuning_count) = Default::default();
+    let [current, original] = [(), ()].map(|()| Mutex::new(Arc::new(start.clone())));
+    let session = Session { start: current, original, send, mail, wake, display_count, tuning_count };
     session.send(start.hello());
     std::thread::scope(|scope| {
-        scope.spawn(|| session.shows());
-        scope.spawn(|| session.tunes());
+        scope.spawn(|| session.run_display());
+        scope.spawn(|| session.run_tuning());
         while let Some(text) = next() {
             match read(&text) {
-                Ok(message) => session.take(message),
+                Ok(message) => session.receive(message),
                 Err(refused) => session.send(refused.into()),
             }
             if session.mail().ended {
@@ -106,39 +106,39 @@ impl Session<'_> {
         Arc::clone(&locked(&self.start))
     }
 
-    /// Begins anew with another structure: what was asked of the one before is dropped.
-    fn begin(&self, structure: &BTreeMap<String, Value>) {
+    /// Starts again with another structure; drops all requests for the previous one.
+    fn restart(&self, structure: &BTreeMap<String, Value>) {
         match Start::own(structure) {
             Err(refused) => self.send(Answer::from(refused).with("own", true)),
             Ok(start) => {
-                *locked(&self.own) = Arc::new(start.clone());
-                self.go_on(start);
+                *locked(&self.original) = Arc::new(start.clone());
+                self.switch_to(start);
             }
         }
     }
 
-    /// Goes on under a pulse or a record, or again under what the study has.
+    /// Switches to a pulse or a record, or back to the study's own forcing.
     fn force(&self, forcing: Option<Map<String, Value>>, text: Option<&str>) {
-        let own = Arc::clone(&locked(&self.own));
+        let original = Arc::clone(&locked(&self.original));
         let start = match forcing {
-            None => Ok((*own).clone()),
-            Some(forcing) => own.under(forcing, text),
+            None => Ok((*original).clone()),
+            Some(forcing) => original.under(forcing, text),
         };
         match start {
             Err(refused) => self.send(Answer::from(refused).with("force", true)),
-            Ok(start) => self.go_on(start),
+            Ok(start) => self.switch_to(start),
         }
     }
 
-    /// What was asked of the study before is dropped.
-    fn go_on(&self, start: Start) {
+    /// Switches to another study and drops all requests for the previous one.
+    fn switch_to(&self, start: Start) {
         let hello = start.hello();
         *locked(&self.start) = Arc::new(start);
         let mut mail = self.mail();
         *mail = Mail { ended: mail.ended, ..Mail::default() };
         drop(mail);
-        self.shown.fetch_add(1, SeqCst);
-        self.tuned.fetch_add(1, SeqCst);
+        self.display_count.fetch_add(1, SeqCst);
+        self.tuning_count.fetch_add(1, SeqCst);
         self.send(hello);
     }
 
@@ -150,44 +150,44 @@ impl Session<'_> {
 
     fn end(&self) {
         self.mail().ended = true;
-        self.shown.fetch_add(1, SeqCst);
-        self.tuned.fetch_add(1, SeqCst);
-        self.bell.notify_all();
+        self.display_count.fetch_add(1, SeqCst);
+        self.tuning_count.fetch_add(1, SeqCst);
+        self.wake.notify_all();
     }
 
-    /// Puts a message in the place of an older one of its kind.
-    fn take(&self, message: Message) {
+    /// Stores a message, replacing an older one of its kind.
+    fn receive(&self, message: Message) {
         match message {
             Message::Look { id, place, span, columns, branches, quantity } => {
                 let mut mail = self.mail();
                 mail.look = Some(Look { id, place, span, columns, branches, quantity });
-                self.shown.fetch_add(1, SeqCst);
+                self.display_count.fetch_add(1, SeqCst);
             }
             Message::Pin { slot, place, quantity } => {
                 let mut mail = self.mail();
                 mail.pins[slot.min(1)] = Some(Pin { place, quantity });
-                self.shown.fetch_add(1, SeqCst);
+                self.display_count.fetch_add(1, SeqCst);
             }
             Message::Tune { place } => {
                 let mut mail = self.mail();
                 mail.tune = Some(place);
-                self.tuned.fetch_add(1, SeqCst);
+                self.tuning_count.fetch_add(1, SeqCst);
             }
-            Message::Own { structure } => self.begin(&structure),
+            Message::Own { structure } => self.restart(&structure),
             Message::Force { forcing, text } => self.force(forcing, text.as_deref()),
             Message::Stop {} => {
-                self.tuned.fetch_add(1, SeqCst);
+                self.tuning_count.fetch_add(1, SeqCst);
             }
             Message::Write(write) => {
                 let mut mail = self.mail();
                 mail.write = Some(write);
-                self.shown.fetch_add(1, SeqCst);
+                self.display_count.fetch_add(1, SeqCst);
             }
         }
-        self.bell.notify_all();
+        self.wake.notify_all();
     }
 
-    /// Waits until `found` finds something in the mail; none at the end.
+    /// Waits until `found` finds work in the mail; none when the session ends.
     fn wait<T>(&self, found: impl Fn(&mut Mail) -> Option<T>) -> Option<T> {
         let mut mail = self.mail();
         loop {
@@ -197,37 +197,37 @@ impl Session<'_> {
             if let Some(work) = found(&mut mail) {
                 return Some(work);
             }
-            mail = self.bell.wait(mail).unwrap_or_else(PoisonError::into_inner);
+            mail = self.wake.wait(mail).unwrap_or_else(PoisonError::into_inner);
         }
     }
 
-    fn shows(&self) {
+    fn run_display(&self) {
         enum Work {
             Look(Look),
             Pin(usize, Pin),
             Write(Write),
         }
-        // Messages are counted while the mail is held, and so is the count read that tells whether there was another since.
+        // The counter is read and increased only while the mail is locked, so a later message always makes this work stale.
         let work = |mail: &mut Mail| {
             let pin = |mail: &mut Mail| {
                 (0..2).find_map(|slot| mail.pins[slot].take().map(|pin| Work::Pin(slot, pin)))
             };
             let write = mail.write.take().map(Work::Write);
             let work = write.or_else(|| mail.look.take().map(Work::Look)).or_else(|| pin(mail))?;
-            Some((work, self.shown.load(SeqCst)))
+            Some((work, self.display_count.load(SeqCst)))
         };
-        let mut known = Known::default();
+        let mut already_sent = Sent::default();
         loop {
             let Some((work, count)) = self.wait(work) else { return };
-            let is_stale = || self.shown.load(SeqCst) != count;
+            let is_stale = || self.display_count.load(SeqCst) != count;
             match work {
-                // Only with its page: a slider that moves on does not end what is to be saved.
+                // Cancelled only when the page closes: moving a slider must not cancel a file to be saved.
                 Work::Write(write) => {
                     let written = texts::written(&self.start(), &write, &|| self.mail().ended);
                     self.send(written.unwrap_or_else(Answer::from));
                 }
                 Work::Look(look) => {
-                    if self.look(&look, &mut known, &is_stale).is_err() {
+                    if self.look(&look, &mut already_sent, &is_stale).is_err() {
                         self.mail().look.get_or_insert(look);
                     }
                 }
@@ -240,14 +240,14 @@ impl Session<'_> {
         }
     }
 
-    /// The motion at once, then what takes longer.
+    /// Sends the motion at once, then what takes longer.
     fn look(
         &self,
-        asked: &Look,
-        known: &mut Known,
+        request: &Look,
+        already_sent: &mut Sent,
         is_stale: &(dyn Fn() -> bool + Sync),
     ) -> Result<(), Stale> {
-        let Look { id, place, span, columns, branches: follows, quantity } = asked;
+        let Look { id, place, span, columns, branches: wants_branches, quantity } = request;
         let send = |answer: Answer| match is_stale() {
             true => Err(Stale),
             false => {
@@ -266,63 +266,63 @@ impl Session<'_> {
         send(motion)?;
         let design = at_no_frequency(&study);
         let quantity = quantity.unwrap_or_else(|| study.quantity());
-        let drawn = (design.clone(), quantity);
-        // What the page will be sent of this design replaces what it has of another, in part or as a whole.
-        known.response.take_if(|of| *of != drawn);
-        known.branches.take_if(|of| *of != design);
-        if *follows && known.branches.is_none() {
+        let response_key = (design.clone(), quantity);
+        // From here on the page may hold parts of this design, so results of another one no longer count as sent.
+        already_sent.response.take_if(|of| *of != response_key);
+        already_sent.branches.take_if(|of| *of != design);
+        if *wants_branches && already_sent.branches.is_none() {
             send(branches::progress(0))?;
         }
-        self.rest(DRAWN, is_stale)?;
+        self.pause(DRAW_DELAY, is_stale)?;
         let curve = Curve::of(&study, quantity);
         let without = (at_no_frequency(&bare(&study)), quantity);
-        // A motion without a frequency has no response over frequencies.
+        // A transient forcing has no response over frequencies.
         let over_band = !study.scene.forcing.is_transient();
-        if over_band && known.bare.as_ref() != Some(&without) {
+        if over_band && already_sent.bare.as_ref() != Some(&without) {
             let curve = Curve::of(&without.0, quantity);
             if curve.is_there() {
                 send(curve.answer("none", CURVES[1], is_stale)?)?;
             }
-            known.bare = Some(without);
+            already_sent.bare = Some(without);
         }
-        if over_band && known.response.is_none() {
+        if over_band && already_sent.response.is_none() {
             send(curve.answer("now", CURVES[0], is_stale)?)?;
         }
-        self.rest(RESTED, is_stale)?;
-        let irregular = match &known.kind {
+        self.pause(IDLE_DELAY, is_stale)?;
+        let irregular = match &already_sent.kind {
             Some((of, irregular)) if *of == study => *irregular,
             _ => {
                 let (answer, irregular) = kind(&study);
                 send(answer)?;
-                known.kind = Some((study.clone(), irregular));
+                already_sent.kind = Some((study.clone(), irregular));
                 irregular
             }
         };
-        if known.response.is_none() {
+        if already_sent.response.is_none() {
             send(worst(&study, "now", is_stale)?)?;
             if over_band {
                 send(curve.answer("now", CURVES[1], is_stale)?.with("fine", true))?;
             }
-            known.response = Some(drawn);
+            already_sent.response = Some(response_key);
         }
-        if irregular && known.spread.as_ref() != Some(&(study.clone(), span)) {
+        if irregular && already_sent.spread.as_ref() != Some(&(study.clone(), span)) {
             send(spread(&study, span, *columns, is_stale)?)?;
-            known.spread = Some((study.clone(), span));
+            already_sent.spread = Some((study.clone(), span));
         }
         send(Answer::new("done"))?;
-        if *follows && known.branches.is_none() {
-            let tell = |answer| {
-                let _ = send(answer); // a search that is stale ends by itself
+        if *wants_branches && already_sent.branches.is_none() {
+            let report = |answer| {
+                let _ = send(answer); // a stale search ends by itself
             };
-            send(branches::follow(&study, &tell, is_stale)?)?;
-            known.branches = Some(design);
+            send(branches::follow(&study, &report, is_stale)?)?;
+            already_sent.branches = Some(design);
         }
         Ok(())
     }
 
-    /// Waits a moment: while a hand still moves, the processors belong to what it sees move, not to work that the next place outdates.
-    fn rest(&self, time: Duration, is_stale: &dyn Fn() -> bool) -> Result<(), Stale> {
-        drop(self.bell.wait_timeout_while(self.mail(), time, |_| !is_stale()));
+    /// Waits, unless the work becomes stale: while a slider moves, the cores compute the motion, not results that will be stale at once.
+    fn pause(&self, time: Duration, is_stale: &dyn Fn() -> bool) -> Result<(), Stale> {
+        drop(self.wake.wait_timeout_while(self.mail(), time, |_| !is_stale()));
         if is_stale() { Err(Stale) } else { Ok(()) }
     }
 
@@ -350,11 +350,11 @@ impl Session<'_> {
         Ok(())
     }
 
-    fn tunes(&self) {
+    fn run_tuning(&self) {
         loop {
-            let tune = |mail: &mut Mail| Some((mail.tune.take()?, self.tuned.load(SeqCst)));
+            let tune = |mail: &mut Mail| Some((mail.tune.take()?, self.tuning_count.load(SeqCst)));
             let Some((place, count)) = self.wait(tune) else { return };
-            let is_stale = || self.tuned.load(SeqCst) != count;
+            let is_stale = || self.tuning_count.load(SeqCst) != count;
             if let Err(refused) = tuning::tune(&self.start(), &place, &|answer| self.send(answer), &is_stale)
             {
                 self.send(Answer::from(refused).with("tuning", true));
@@ -363,7 +363,7 @@ impl Session<'_> {
     }
 }
 
-/// The study with the frequency that its response does not depend on taken out.
+/// The study with its frequency set to zero, since its response curve does not depend on it.
 fn at_no_frequency(study: &Study) -> Study {
     let mut study = study.clone();
     study.scene.forcing.frequency = NonNegative::default();

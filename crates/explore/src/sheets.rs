@@ -1,4 +1,4 @@
-//! Figures to take away: those of the page, drawn as the figures of all results are.
+//! The page's figures as SVG files, in the style of all results.
 
 use crate::forcing::{curve, forced};
 use crate::refused::Refused;
@@ -14,9 +14,9 @@ use retune_study::{Study, design_words, hertz_and_rpm};
 
 /// Columns that the curves of the motion are thinned to.
 const COLUMNS: usize = 900;
-/// Opacity of what a limit forbids.
+/// Opacity of the area that a limit forbids.
 const FORBIDDEN: f64 = 0.25;
-/// A limit up to so many times the largest value is drawn.
+/// A limit is drawn if it is at most this many times the largest value.
 const NEAR: f64 = 3.0;
 const NOW: Stroke = Stroke::new(VERMILION, 1.2, Dash::Solid);
 const NONE: Stroke = Stroke::new(BLACK, 1.1, Dash::Short);
@@ -63,7 +63,7 @@ pub fn motion(study: &Study) -> Result<Sheet, Refused> {
         charts.push(Chart::of(Axis::linear("t, s", (from, to)), y, vec![line], 90.0));
     }
     if let Some(last) = charts.last_mut() {
-        last.height = 115.0; // with the numbers of the abscissa
+        last.height = 115.0; // includes the numbers of the abscissa
     }
     Ok(Sheet {
         title: "Motion".to_owned(),
@@ -80,7 +80,7 @@ pub fn motion(study: &Study) -> Result<Sheet, Refused> {
     })
 }
 
-/// The response over the band, beside that without a damper and those of the pinned designs A and B.
+/// The response over the band, without a damper, and of the pinned designs A and B.
 ///
 /// # Errors
 /// The work has become stale.
@@ -140,19 +140,19 @@ pub fn response(
     })
 }
 
-/// What a limit forbids.
+/// The area that a limit forbids.
 fn forbidden(limit: f64) -> Layer {
     let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
     Layer::Band { x: everywhere, y: (limit, f64::INFINITY), colour: GREY, opacity: FORBIDDEN }
 }
 
-/// How high the chart is: so that the largest value is seen, and a limit that is not far above it.
+/// The upper end of the ordinate: shows the largest value, and a limit not far above it.
 fn height(top: f64, limit: Option<f64>) -> f64 {
     let near = limit.filter(|limit| *limit < NEAR * top).unwrap_or(0.0);
     if top > 0.0 { 1.06 * top.max(near) } else { 1.0 }
 }
 
-/// What the curves are of, and what the limit covers.
+/// Describes what the curves show and what the limit covers.
 fn covered(study: &Study, quantity: Measure) -> String {
     let [own, limited] = parts(study, quantity);
     let limit = allowed(study, quantity).map_or(String::new(), |_| format!("; the limit is on it {limited}"));

@@ -1,4 +1,4 @@
-//! The study that a session starts from, and what becomes of it when a page changes its damper and its numbers.
+//! The study that a session starts from, and the study that results when a page changes its damper and numbers.
 
 use crate::forcing::forced;
 use crate::limits::bounded;
@@ -23,25 +23,25 @@ const DEFAULT: &str = include_str!("study.json");
 #[derive(Clone, Debug)]
 pub struct Start {
     study: Study,
-    /// What was named on the command line, as long as its study is followed.
+    /// The argument of the command line, while its study is in use.
     pub file: Option<String>,
     damper: Damper,
-    /// Whether it is a structure that was given in words.
+    /// Whether it is a structure entered on the page.
     is_own: bool,
     /// Whether a study was named on the command line.
     is_named: bool,
 }
 
-/// A number that a page can turn.
+/// A number that a page can change.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Control {
-    /// Its name, that of `--set`.
+    /// Its name in `--set`.
     pub name: &'static str,
     /// What it is.
     pub words: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// Every unit in which it may be typed, with its size in that one.
+    /// Every unit in which it may be typed, with its size in `unit`.
     pub units: &'static [Unit],
     /// The study's value.
     pub value: f64,
@@ -49,11 +49,11 @@ pub struct Control {
     pub range: [f64; 2],
     /// Whether the slider is logarithmic.
     pub log: bool,
-    /// The smallest and the largest value that the study's search may give it, where it has them.
+    /// Its bounds in the study's search, if any.
     pub bounds: [Option<f64>; 2],
-    /// Whether it is of walls and contacts, which few turn.
+    /// Whether it belongs to walls and contacts, which are seldom changed.
     pub of_contact: bool,
-    /// Whether it is the size of what moves the structure.
+    /// Whether it is the amplitude of a forcing.
     pub amplitude: bool,
     /// The dampers that have it.
     pub dampers: &'static [DamperKind],
@@ -62,7 +62,7 @@ pub struct Control {
 /// The fields of a pulse and of a record.
 const GIVEN: [&str; 8] = ["pulse", "record", "of", "peak", "duration", "unit", "scale", "column"];
 
-/// The numbers that a page shows first, in its order; the amplitudes and all others of the catalogue follow.
+/// The numbers that a page shows first, in this order; the amplitudes and then all other parameters follow.
 const FIRST: [Parameter; 8] = [
     Parameter::Omega,
     Parameter::K2,
@@ -86,7 +86,7 @@ const fn dampers(parameter: Parameter) -> &'static [DamperKind] {
 }
 
 impl Start {
-    /// From a study file or results; from the paper's SSVI NES if none are named.
+    /// Reads a study file or results; the paper's SSVI NES if none are named.
     ///
     /// # Errors
     /// The study is wrong.
@@ -98,7 +98,7 @@ impl Start {
         let none = || StudyError::Rule { file: "ssvi.json".to_owned(), rule: Rule::NoDamper };
         let other = default.scene.damper.ok_or_else(none)?;
         let study = study.unwrap_or(default);
-        // The gaps that the study's damper lacks are those of the paper's; its walls follow its mass.
+        // A damper without walls gets the paper's gaps, and walls for its mass.
         let own = study.scene.damper.unwrap_or(other);
         let damper = if own.contact.is_some() {
             own
@@ -110,7 +110,8 @@ impl Start {
         Ok(Self { study, file, damper, is_own: false, is_named })
     }
 
-    /// From a structure in words, with Den Hartog's TMD on it; the gaps and the walls of its SSVI NES are scaled as `retune design` does.
+    /// The study of a structure given by the fields of `retune design`, with Den Hartog's TMD; gaps and walls of its SSVI NES are scaled
+    /// as there.
     ///
     /// # Errors
     /// A field is missing or wrong: its name, and what to give.
@@ -139,10 +140,10 @@ impl Start {
         })
     }
 
-    /// The same moved by a pulse or a record, from its start until the structure is at rest again.
+    /// This study under a pulse or a record; the run lasts until the structure is at rest again.
     ///
     /// # Errors
-    /// It is none, or has a field that is not one of it.
+    /// It is neither, or has a field that does not belong to it.
     pub fn under(&self, forcing: Map<String, Value>, text: Option<&str>) -> Result<Self, Refused> {
         let stray = forcing.keys().find(|name| !GIVEN.contains(&name.as_str()));
         if let Some(name) = stray {
@@ -176,7 +177,7 @@ impl Start {
         &self.study
     }
 
-    /// What a page must know before it asks.
+    /// The first answer: what a page must know before its first request.
     pub fn hello(&self) -> Answer {
         let study = &self.study;
         let (band, quantity) = (band(study), study.quantity());
@@ -209,7 +210,7 @@ impl Start {
         }
     }
 
-    /// The study at a place, by the rules of study files. Bounds of its search, which a hand may leave, are not checked.
+    /// The study at a place, by the rules of study files. The bounds of its search are not checked: a user may leave them.
     ///
     /// # Errors
     /// A number that a study may not have.
@@ -220,10 +221,10 @@ impl Start {
         bounded(Study { optimize: self.with(place.damper).optimize, ..study })
     }
 
-    /// The study at a place, its search included, as a file would have it.
+    /// The study at a place as a file would have it, including its search.
     ///
     /// # Errors
-    /// As [`Self::at`]; or a rule of the search, for instance a value out of its bounds.
+    /// As for [`Self::at`]; or a broken rule of the search, for instance a value out of its bounds.
     pub fn file_at(&self, place: &Place) -> Result<Study, Refused> {
         let mut study = self.with(place.damper);
         if place.damper == DamperKind::None {
@@ -256,7 +257,7 @@ impl Start {
         study
     }
 
-    /// What a page can turn, whichever damper it hangs there.
+    /// All numbers that a page can change, for every kind of damper.
     pub fn controls(&self) -> Vec<Control> {
         let walled = Study { optimize: None, ..self.with(DamperKind::Ssvi) };
         let control = |parameter: Parameter| {
@@ -283,7 +284,7 @@ impl Start {
         first().chain(others).filter_map(control).collect()
     }
 
-    /// The ends that the search of the study has.
+    /// The bounds of the study's search on a parameter.
     fn bounds(&self, parameter: Parameter) -> [Option<f64>; 2] {
         let search = self.study.optimize.as_ref().filter(|optimize| optimize.vary.contains(&parameter));
         search
@@ -291,7 +292,7 @@ impl Start {
             .map_or([None; 2], |(lower, upper)| [Some(lower), upper])
     }
 
-    /// The range of a slider: of the search's bounds, as far as a slider can, or of the band, else about the value.
+    /// The range of a slider: the band, the search's bounds (up to [`WIDEST`] times the value), or else a range around the value.
     fn range(&self, parameter: Parameter, value: f64) -> [f64; 2] {
         if parameter.is_frequency() {
             let band = band(&self.study);
@@ -314,17 +315,17 @@ impl Start {
     }
 }
 
-/// A slider goes to at most so many times its first value.
+/// A slider ends at most at this multiple of its first value.
 const WIDEST: f64 = 30.0;
 
-/// What is told in figures: name, unit and words of each.
+/// The figures of a run: name, unit and description of each.
 fn figures() -> Vec<[&'static str; 3]> {
     let largest = Measure::ALL.map(|measure| [measure.name(), measure.unit(), measure.words()]);
     let impacts = [IMPACTS, "", "impacts in the window, on the structure and on the obstacle"];
     largest.into_iter().chain([impacts]).collect()
 }
 
-/// The numbers of a place as `--set` has them.
+/// The numbers of a place as settings of `--set`.
 pub fn settings(place: &Place) -> Result<Vec<Setting>, Refused> {
     let setting = |(name, value): (&String, &f64)| Ok(format!("{name}={value}").parse::<Setting>()?);
     place.set.iter().map(setting).collect()

@@ -1,4 +1,4 @@
-//! A place written down: as a study, a command line, lines of Python, a table, a figure. A page offers them; nothing is written here.
+//! Exports a place as a study, a command line, Python code, a table or a figure. The page offers them as files; nothing is written here.
 
 use crate::protocol::{Answer, Place, What, Write};
 use crate::refused::Refused;
@@ -12,10 +12,10 @@ use retune_study::{Settable, Study};
 
 /// Time between two rows of a motion, s, as `retune simulate --trajectory` has it.
 const INTERVAL: f64 = 0.005;
-/// Rows of a motion.
+/// Most rows of a motion.
 const MOST_ROWS: f64 = 200_000.0;
 
-/// A place in a form; of figures the response has the pinned designs, too.
+/// Exports a place in a form. The response and the report also contain the pinned designs.
 ///
 /// # Errors
 /// A study file could not have these numbers, the run fails, or the work has become stale.
@@ -43,7 +43,7 @@ pub fn written(
             (format!("{name}-response.svg"), svg(&text))
         }
         What::Json => {
-            // Once it ends within the steps of a page, it is the run of the file, which may have more.
+            // The file allows more steps than a page: first check that the run ends within a page's limit.
             simulate(&start.at(place)?, None).map_err(Refused::whole)?;
             let run = simulate(&start.file_at(place)?, None).map_err(Refused::whole)?;
             (format!("{name}-run.json"), answer::text(&run).map_err(Refused::whole)? + "\n")
@@ -57,19 +57,18 @@ pub fn written(
     Ok(Answer::new("written").with("what", what).with("file", file).with("text", text))
 }
 
-/// The file that a study is saved as.
+/// The name of the file that a study is saved as.
 fn saved(name: &str) -> String {
     format!("{name}-explored.json")
 }
 
-/// A study file, named by whoever saves it.
+/// The text of a study file without a name, which then follows from its file name.
 fn study(study: &Study) -> Result<String, Refused> {
     let study = Study { name: None, ..study.resolved() };
     serde_json::to_string_pretty(&study).map(|text| text + "\n").map_err(Refused::whole)
 }
 
-/// The file that a command is given, the numbers that differ from it, and a note. Where no file has this damper, it is the one that the
-/// page saves.
+/// The file for a command, the numbers that differ from it, and a note. If no file has this damper, it is the one that the page saves.
 struct Named {
     file: String,
     set: Vec<String>,

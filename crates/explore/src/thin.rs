@@ -1,7 +1,7 @@
-//! Rows of a motion thinned to the columns of pixels that show them. Every peak stays: of the rows in a column of pixels those remain at
-//! which some quantity is largest or smallest, and the first and the last.
+//! Thins the rows of a motion to pixel columns without losing a peak: of each column it keeps the first and the last row, and those
+//! where some quantity is largest or smallest.
 
-/// Rows that wait until their column of pixels is whole.
+/// Most rows buffered until their pixel column is complete; then they are thinned early.
 const MOST_WAITING: usize = 4096;
 
 /// Rows of `N` quantities over time.
@@ -17,7 +17,7 @@ pub struct Thin<const N: usize> {
 pub struct Thinning<const N: usize> {
     from: f64,
     width: f64,
-    /// The number of the column of pixels that `rows` belong to.
+    /// The index of the pixel column of `rows`.
     column: f64,
     rows: Vec<(f64, [f64; N])>,
     kept: Thin<N>,
@@ -31,42 +31,42 @@ impl<const N: usize> Thinning<N> {
         Self { from, width, column: 0.0, rows: Vec::new(), kept }
     }
 
-    /// The next row; times do not fall.
+    /// Adds the next row; times must not decrease.
     pub fn push(&mut self, t: f64, row: [f64; N]) {
         let column = ((t - self.from) / self.width).floor();
         if column != self.column {
-            self.keep();
+            self.flush();
             self.column = column;
         }
         if self.rows.len() == MOST_WAITING {
-            let stays = self.stays();
-            self.rows = stays.into_iter().map(|row| self.rows[row]).collect();
+            let kept_rows = self.kept_rows();
+            self.rows = kept_rows.into_iter().map(|row| self.rows[row]).collect();
         }
         self.rows.push((t, row));
     }
 
-    /// What remains.
+    /// Returns the rows that are kept.
     pub fn finish(mut self) -> Thin<N> {
-        self.keep();
+        self.flush();
         self.kept
     }
 
-    /// The rows of this column of pixels that stay.
-    fn stays(&self) -> Vec<usize> {
+    /// The indices of the rows of this pixel column that are kept.
+    fn kept_rows(&self) -> Vec<usize> {
         let Some(last) = self.rows.len().checked_sub(1) else { return Vec::new() };
-        let mut stays = vec![0, last];
+        let mut kept_rows = vec![0, last];
         for quantity in 0..N {
             let value = |row: &usize| self.rows[*row].1[quantity];
-            stays.extend((0..=last).min_by(|a, b| value(a).total_cmp(&value(b))));
-            stays.extend((0..=last).max_by(|a, b| value(a).total_cmp(&value(b))));
+            kept_rows.extend((0..=last).min_by(|a, b| value(a).total_cmp(&value(b))));
+            kept_rows.extend((0..=last).max_by(|a, b| value(a).total_cmp(&value(b))));
         }
-        stays.sort_unstable();
-        stays.dedup();
-        stays
+        kept_rows.sort_unstable();
+        kept_rows.dedup();
+        kept_rows
     }
 
-    fn keep(&mut self) {
-        for (t, row) in self.stays().into_iter().map(|row| self.rows[row]) {
+    fn flush(&mut self) {
+        for (t, row) in self.kept_rows().into_iter().map(|row| self.rows[row]) {
             self.kept.t.push(t);
             self.kept.columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
         }
@@ -74,12 +74,12 @@ impl<const N: usize> Thinning<N> {
     }
 }
 
-/// The least and the largest of several curves in each column of pixels.
+/// The smallest and the largest value of a curve in each pixel column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spread {
     from: f64,
     width: f64,
-    /// The least and the largest value in each column; infinite where there was none.
+    /// The smallest and the largest value in each column; infinite where there was none.
     pub ends: Vec<[f64; 2]>,
 }
 
@@ -90,7 +90,7 @@ impl Spread {
         Self { from, width: (to - from) / columns.max(1) as f64, ends }
     }
 
-    /// Another value.
+    /// Adds a value.
     pub fn push(&mut self, t: f64, value: f64) {
         let column = ((t - self.from) / self.width).clamp(0.0, (self.ends.len() - 1) as f64) as usize;
         let [least, largest] = &mut self.ends[column];

@@ -1,5 +1,5 @@
-//! Tune from here: the refinement of the study's search from the design of the page, with its log, over a map of what it makes small; and a
-//! descent by derivatives from its end, as in `retune optimize`.
+//! Tunes from the page's design: the refinement of the study's search, with its log, drawn over a map of the objective, and a descent by
+//! derivatives from its end, as in `retune optimize`.
 
 use crate::limits::{MOST_EVALUATIONS, MOST_RUNS, MOST_RUNS_OF_DESCENT};
 use crate::protocol::{Answer, Place};
@@ -14,7 +14,7 @@ use std::ops::ControlFlow;
 /// Cells of the map along each of its sides.
 const CELLS: [usize; 2] = [25, 17];
 
-/// Runs the search. `send` receives the map as it is made, a row for each iteration, and the best design at the end.
+/// Runs the search. `send` receives the map as it is computed, a row for each iteration, and finally the best design.
 ///
 /// # Errors
 /// The study cannot be tuned from this place.
@@ -101,7 +101,7 @@ fn refine(
     let mut options = search.options.clone();
     options.max_fun_evals =
         Some(options.max_fun_evals.map_or(MOST_EVALUATIONS, |most| most.min(MOST_EVALUATIONS)));
-    // After it was stopped a search asks for no more runs; a value that was not computed is no better than any.
+    // A stopped search makes no more runs: values not computed are infinite. The first value is always computed.
     let begun = std::cell::Cell::new(false);
     let value_at = |design: &[f64], cutoff: f64| {
         let first = !begun.replace(true);
@@ -119,18 +119,18 @@ fn refine(
     })
 }
 
-/// The value of a design, as searches see it; none better than any if it has none or is stopped.
+/// The value of a design for a search; infinite if it has none or the search is stopped.
 fn value(
     objective: &DesignObjective,
     design: &[f64],
     cutoff: f64,
-    goes_on: &(dyn Fn() -> bool + Sync),
+    proceed: &(dyn Fn() -> bool + Sync),
 ) -> f64 {
-    let found = objective.scene(design).and_then(|scene| objective.evaluate_while(&scene, cutoff, goes_on));
+    let found = objective.scene(design).and_then(|scene| objective.evaluate_while(&scene, cutoff, proceed));
     found.map_or(f64::INFINITY, |found| found.ranked)
 }
 
-/// Runs behind a value, without those that locate the maxima of a band.
+/// Number of runs behind a value, without those that locate the maxima of a band.
 fn runs(objective: &Objective) -> usize {
     let term = |(_, term): (f64, &Objective)| {
         let k1 = term.k1.as_ref().map_or(1, |k1| k1.samples().len());
@@ -192,7 +192,7 @@ impl Map {
         answer
     }
 
-    /// Rows from the middle outwards would be prettier; from below they are easier to follow.
+    /// Computes the map row by row from below, which is easier to follow than from the middle outwards.
     fn draw(
         &self,
         objective: &DesignObjective,

@@ -1,4 +1,4 @@
-//! Atlas of failures: every method of Retune on every difficult scene, with the result and its cause.
+//! Atlas of failures: every method of Retune on every difficult scene, with its verdict and the cause.
 
 pub mod difficulties;
 pub mod draw;
@@ -23,21 +23,21 @@ use retune_solver::{Contacts, Method, Settings};
 pub enum Verdict {
     /// An error of at most [`WORKS`], every impact counted.
     Works,
-    /// An error of at most [`WORKS`], impacts miscounted: those that are missed or found twice are too shallow to matter.
+    /// An error of at most [`WORKS`], but impacts miscounted: those missed or found twice are too shallow to matter.
     Miscounts,
     /// An error of at most [`INACCURATE`], and at most one impact, or one in ten, miscounted.
     Inaccurate,
     /// An error was returned.
-    Says,
+    ReportsError,
     /// A wrong answer without an error.
     Silent,
-    /// Its program has no such contact.
+    /// The program has no such contact.
     NotRun,
 }
 
 /// Largest error of a cell that works.
 pub const WORKS: f64 = 1e-3;
-/// Largest error of a cell that is inaccurate: a larger one means another motion.
+/// Largest error of an inaccurate cell: a larger one means another motion.
 pub const INACCURATE: f64 = 5e-2;
 
 impl Verdict {
@@ -46,13 +46,13 @@ impl Verdict {
             Verdict::Works => "works",
             Verdict::Miscounts => "miscounts",
             Verdict::Inaccurate => "inaccurate",
-            Verdict::Says => "says it fails",
+            Verdict::ReportsError => "says it fails",
             Verdict::Silent => "fails silently",
             Verdict::NotRun => "not run",
         }
     }
 
-    /// By an error and the impacts found and expected.
+    /// The verdict from an error and the impacts found and expected.
     pub fn of(error: f64, [found, expected]: [usize; 2]) -> Self {
         let missed = found.abs_diff(expected);
         match () {
@@ -80,13 +80,13 @@ pub const MOST_STEPS: u64 = 400_000;
 pub const REFERENCE: f64 = 1e-12;
 
 impl Way {
-    /// As settings, with a bound on the work.
+    /// The settings of a run, with a bound on the work.
     pub fn settings(&self) -> Settings {
         Settings { max_steps: MOST_STEPS, ..runs::settings(self.method, self.contacts, self.setting) }
     }
 }
 
-/// The methods with careful settings (rtol 1e-6; a step of 1 ms), and the paper's with MATLAB's default (rtol 1e-3).
+/// The methods with careful settings (rtol 1e-6; a step of 1 ms), and the paper's method with MATLAB's default (rtol 1e-3).
 pub const WAYS: [Way; 10] = {
     const fn way(name: &'static str, method: Method, contacts: Contacts, setting: f64) -> Way {
         Way { name, method, contacts, setting }
@@ -126,13 +126,13 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// How long the shortest contact lasts, in words.
+    /// The duration of the shortest contact, in words.
     fn contact(&self) -> Option<String> {
         self.shortest_contact.map(|s| format!("{:.2} ms", s * 1e3))
     }
 }
 
-/// How long contacts last.
+/// Measures the shortest contact.
 #[derive(Default)]
 struct Durations {
     began: Option<f64>,
@@ -151,13 +151,13 @@ impl Durations {
 impl Observer<4> for Durations {
     fn segment(&mut self, segment: &dyn Segment<4>) {
         let [from, to] = segment.ends();
-        // Only in flight is time uniform over a segment.
+        // A uniform clock marks flight: the contact has ended.
         if from.clock == [1.0, 0.0] && to.t > from.t {
             self.ended(from.t);
         }
     }
     fn touch_down(&mut self, t: f64, _side: Side) {
-        self.ended(t); // between the two walls there may be no flight segment
+        self.ended(t); // contacts with the two walls may follow without flight
         self.began = Some(t);
     }
 }
@@ -179,7 +179,7 @@ pub fn cell(way: &Way, case: &Case, truth: &Truth) -> Cell {
     judged(runs::run(case, &way.settings(), false), case, truth, &why(way, truth))
 }
 
-/// The cell of a run, with the reason why such a run may fail.
+/// The cell of a run; `why` is the reason why such a run may fail.
 fn judged(run: Result<Found, String>, case: &Case, truth: &Truth, why: &str) -> Cell {
     let expected = truth.found.impacts;
     let found = match run {
@@ -187,7 +187,7 @@ fn judged(run: Result<Found, String>, case: &Case, truth: &Truth, why: &str) -> 
         Err(said) => {
             let cause = format!("it says \"{said}\": {why}");
             return Cell {
-                verdict: Verdict::Says,
+                verdict: Verdict::ReportsError,
                 error: f64::NAN,
                 impacts: [0, expected],
                 evaluations: 0,
@@ -226,7 +226,7 @@ fn why(way: &Way, truth: &Truth) -> String {
     }
 }
 
-/// The same of a method that follows a tolerance.
+/// Like [`why`], for a method with a tolerance.
 fn why_by_tolerance(contacts: Contacts, rtol: f64, truth: &Truth) -> String {
     match (truth.contact(), contacts) {
         (Some(contact), Contacts::Stepped) => format!(
@@ -247,7 +247,7 @@ pub fn energy_cell(way: &Way) -> Cell {
     let drift = energy::drift(way.method, way.contacts, way.setting);
     let impacts = [drift.impacts as usize, energy::IMPACTS as usize];
     let (verdict, error, cause) = match drift.change {
-        Err(said) => (Verdict::Says, f64::NAN, said),
+        Err(said) => (Verdict::ReportsError, f64::NAN, said),
         Ok(change) => {
             let verdict = Verdict::of(change.abs(), impacts);
             let sign = if change < 0.0 { "lost" } else { "gained" };

@@ -1,4 +1,4 @@
-//! The runs of the comparison: each method of each program in each of its ways on a scene, at ever tighter settings.
+//! The runs of the comparison: each method of each program, with each treatment of contacts, at ever tighter settings.
 
 use crate::decades;
 use crate::moreau_jean::{self, STEPPER};
@@ -9,13 +9,13 @@ use crate::system;
 use retune_solver::Method;
 use std::time::{Duration, Instant};
 
-/// A series of settings ends with the first whose runs together take longer than this.
-const PATIENCE: Duration = Duration::from_millis(500);
+/// A series of settings ends after the first whose runs together take longer than this.
+const TIME_LIMIT: Duration = Duration::from_millis(500);
 
 /// Program, method, and how it treats contacts.
 type Way = (&'static str, &'static str, &'static str);
 
-/// All series of a scene. Between rigid walls nobody steps over contacts: without an impact there the damper falls through.
+/// All series of a scene. Contacts with rigid walls are never stepped over: without an impact the damper would pass through the wall.
 fn all(case: &Case) -> Vec<(Way, Vec<f64>)> {
     let rigid = system(&case.scene).is_some_and(|system| system.is_rigid());
     let mut series: Vec<(Way, Vec<f64>)> = Vec::new();
@@ -43,7 +43,7 @@ fn all(case: &Case) -> Vec<(Way, Vec<f64>)> {
     series
 }
 
-/// The full name of a program that is built in, from its beginning.
+/// The full name of a built-in program that begins with `begins`.
 pub fn program(begins: &str) -> Option<&'static str> {
     PEERS.iter().map(|peer| peer.program).find(|program| program.starts_with(begins))
 }
@@ -74,7 +74,7 @@ pub fn rows(case: &Case, reference: &Found) -> Vec<Row> {
         for setting in settings {
             let begun = Instant::now();
             rows.push(Row::of(case, reference, way, setting, attempt(case, way, setting, true)));
-            if begun.elapsed() > PATIENCE {
+            if begun.elapsed() > TIME_LIMIT {
                 break;
             }
         }
@@ -82,19 +82,19 @@ pub fn rows(case: &Case, reference: &Found) -> Vec<Row> {
     rows
 }
 
-/// How a row differs from the same run made again without its time; none where it does not, or where the program is not built in.
+/// How a row differs from a rerun without timing; none if it does not, or if the program is not built in.
 pub fn change(row: &Row, case: &Case, reference: &Found) -> Option<String> {
     let built_in = ["retune", STEPPER].contains(&row.program.as_str())
         || PEERS.iter().any(|peer| peer.program == row.program);
     let way = (row.program.as_str(), row.method.as_str(), row.contacts);
-    let again = built_in
+    let repeated = built_in
         .then(|| Row::of(case, reference, way, row.setting, attempt(case, way, row.setting, false)))?;
-    // All that the table has, at its digits, but time and spread.
-    let said = |row: &Row| -> Vec<String> {
+    // The fields of the table, with its digits, except time and spread.
+    let fields_of = |row: &Row| -> Vec<String> {
         let text = runs::csv(std::slice::from_ref(row));
         let fields = text.lines().nth(1).unwrap_or_default().split(',').enumerate();
         fields.filter(|(i, _)| ![5, 6].contains(i)).map(|(_, field)| field.to_owned()).collect()
     };
-    let (before, after) = (said(row), said(&again));
+    let (before, after) = (fields_of(row), fields_of(&repeated));
     (before != after).then(|| format!("{} became {}", before.join(","), after.join(",")))
 }

@@ -26,8 +26,8 @@ impl Measure {
     }
 }
 
-/// A method on a scene: its cheapest treatment of contacts, from the tightest setting to the loosest, with the error that no
-/// tighter setting exceeds (so that an accidentally small error does not count).
+/// A method on a scene with its cheapest treatment of contacts, from the tightest setting to the loosest. The error at a setting is the
+/// largest up to there, so that an accidentally small error does not count.
 #[derive(Clone)]
 pub struct Curve<'a> {
     /// Name of the method, with its program unless it is Retune's.
@@ -44,7 +44,7 @@ impl Curve<'_> {
         self.name.split_once(' ').map_or("retune", |(program, _)| program)
     }
 
-    /// Whether its right-hand side is interpreted, so that its time says nothing about the method.
+    /// Whether its right-hand side is interpreted, so that its time does not reflect the method.
     pub fn is_interpreted(&self) -> bool {
         ["Octave", "SciPy"].contains(&self.program())
     }
@@ -59,11 +59,11 @@ impl Curve<'_> {
     }
 }
 
-/// Names of the default method, and of the paper's.
+/// Names of the default method and the paper's method.
 const HYBRID: &str = "hybrid";
 const PAPERS: &str = "ode23s";
 
-/// Errors below it mean nothing, even where two references agree better: rounding.
+/// Errors below this are rounding, even where two references agree better.
 const FLOOR: f64 = 1e-13;
 
 /// Smallest error that is distinguished from zero.
@@ -86,7 +86,7 @@ fn curve<'a>(rows: &[&'a Row], measure: Measure) -> Option<Curve<'a>> {
     Some(Curve { name: first.name(), contacts: first.contacts, points, failed })
 }
 
-/// Rank of a curve: the first of three levels that it reaches, and the cost there; less is better.
+/// Rank of a curve: the tightest of three error levels that it reaches, and the cost there; smaller is better.
 pub fn rank(curve: &Curve<'_>) -> (usize, f64) {
     [1e-6, 1e-4, 1e-2]
         .into_iter()
@@ -145,7 +145,7 @@ fn style(name: &str) -> (Colour, f64, Shape) {
     }
 }
 
-/// Retune's methods, both of Octave's, and of every other program the best one for the scene.
+/// Retune's methods, both of Octave's, and the best method of every other program on the scene.
 fn shown<'a>(all: Vec<Curve<'a>>) -> Vec<Curve<'a>> {
     let mut kept: Vec<Curve<'a>> = Vec::new();
     for curve in all {
@@ -165,17 +165,17 @@ fn shown<'a>(all: Vec<Curve<'a>>) -> Vec<Curve<'a>> {
     kept
 }
 
-/// Lines of a panel, at most: more cannot be told apart.
-const MOST: usize = 6;
+/// Most lines of a panel: more cannot be told apart.
+const MAX_LINES: usize = 6;
 
-/// The curves of a scene in two panels: Retune's methods, and the hybrid beside other programs; of each those that serve the scene best. The
-/// hybrid and the paper's method always stay.
+/// The curves of a scene in two panels: Retune's methods, and the hybrid beside other programs. Each panel keeps the best curves, and
+/// always the hybrid and the paper's method.
 fn panels<'a>(all: Vec<Curve<'a>>) -> [Vec<Curve<'a>>; 2] {
     let others: Vec<Curve<'a>> =
         all.iter().filter(|curve| curve.name == HYBRID || curve.program() != "retune").cloned().collect();
     let own = all.into_iter().filter(|curve| curve.program() == "retune").collect();
     [own, others].map(|mut curves: Vec<Curve<'a>>| {
-        while curves.len() > MOST {
+        while curves.len() > MAX_LINES {
             let key = |curve: &Curve<'_>| match curve.name.as_str() {
                 HYBRID | PAPERS => (0, 0.0),
                 _ => rank(curve),

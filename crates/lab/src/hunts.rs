@@ -1,4 +1,4 @@
-//! What hunts need that no test does: those that take minutes at least, and draws.
+//! Hunts that take minutes or more, and draws that no test needs.
 
 pub mod durations;
 pub mod robust;

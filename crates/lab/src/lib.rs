@@ -1,7 +1,8 @@
-//! Retune's methods and other people's integrators on the same scenes: speed against accuracy, and where methods fail. And hunts for errors.
+//! Retune's methods and third-party integrators on the same scenes: speed against accuracy, and failures. Also hunts for errors.
 //!
-//! No crate imports this one, and it is not built with the program (`just lab` lists what builds it). Other people's integrators come with the
-//! feature `integrators`. To read: `scenes`, `runs`, `reference`, then `comparison` and `text` (`just lab accuracy`) or `atlas` (`just lab stability`).
+//! No crate imports this one, and it is not built with the program (`just lab` lists what builds it). Third-party integrators need the
+//! feature `integrators`. To read: `scenes`, `runs`, `reference`, then `comparison` and `text` (`just lab accuracy`) or `atlas` (`just lab
+//! stability`).
 #![allow(missing_docs, reason = "its own programs and tests use it: what a name says is not said again")]
 
 pub mod atlas;

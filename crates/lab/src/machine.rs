@@ -6,16 +6,16 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// Its file.
+/// The name of the file.
 pub const NAME: &str = "machine.json";
 
-/// The first line that a command prints; none where there is no such command.
-fn said(program: &str, arguments: &[&str]) -> Option<String> {
+/// The first line that a command prints; none if there is no such command.
+fn first_line(program: &str, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program).args(arguments).output().ok()?;
     Some(String::from_utf8_lossy(&output.stdout).lines().next()?.to_owned())
 }
 
-/// What it is now. The load is that of the last minute: above some 0.3 before a start, others are at work.
+/// The current machine. The load is that of the last minute: above some 0.3 at the start, other processes are running.
 pub fn this() -> Value {
     let system = |file: &str| fs::read_to_string(Path::new("/proc").join(file)).unwrap_or_default();
     let processor = system("cpuinfo").lines().find_map(|line| {
@@ -25,13 +25,13 @@ pub fn this() -> Value {
         "processor": processor,
         "cores": std::thread::available_parallelism().map_or(1, usize::from),
         "load": system("loadavg").split(' ').next(),
-        "rustc": said("rustc", &["--version"]),
-        "cc": said("cc", &["--version"]),
-        "commit": said("git", &["describe", "--always", "--dirty"]),
+        "rustc": first_line("rustc", &["--version"]),
+        "cc": first_line("cc", &["--version"]),
+        "commit": first_line("git", &["describe", "--always", "--dirty"]),
     })
 }
 
-/// That of a directory of results, in words.
+/// The machine of a directory of results, in words.
 pub fn words_of(folder: &Path) -> Any<String> {
     Ok(words(&serde_json::from_str(&fs::read_to_string(folder.join(NAME))?)?))
 }

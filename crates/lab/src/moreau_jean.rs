@@ -10,10 +10,10 @@ use crate::scenes::Case;
 use crate::system;
 use nalgebra::{Matrix2, RowVector2, Vector2};
 
-/// Its name in the place of a program's.
+/// Its name in the column of programs.
 pub const STEPPER: &str = "Moreau-Jean";
 
-/// The share of the forces at the end of a step.
+/// Weight of the forces at the end of a step.
 const THETA: f64 = 0.5;
 
 /// `M v' + C v + K q = f cos ωt + g` between rigid walls at `r = q2 - q1 = 0` and `r = width`.
@@ -23,17 +23,17 @@ struct Dynamics {
     stiffness: Matrix2<f64>,
     amplitude: f64,
     omega: f64,
-    /// What the spring adds, which is slack at `q2 - q1 = rest`.
+    /// The constant force of the spring, which is unstressed at `q2 - q1 = rest`.
     constant: Vector2<f64>,
     rest: f64,
     width: f64,
     restitution: f64,
-    /// Of the structure alone, N/m.
+    /// Stiffness of the structure alone, N/m.
     k1: f64,
 }
 
 impl Dynamics {
-    /// Of a scene whose damper stands between rigid walls under a harmonic force.
+    /// The equations of a scene with rigid walls and a harmonic force.
     fn of(case: &Case) -> Option<Self> {
         let (primary, damper) = (&case.scene.primary, case.scene.damper?);
         let between = Matrix2::new(1.0, -1.0, -1.0, 1.0);
@@ -58,7 +58,7 @@ impl Dynamics {
     }
 }
 
-/// A run in steps of `h` (s), the last one shorter; E1max is the largest at the ends of steps.
+/// A run in equal steps of about `h` (s); E1max is the largest value at the ends of steps.
 pub fn run(case: &Case, h: f64, is_timed: bool) -> Result<Found, String> {
     let dynamics = Dynamics::of(case).ok_or("only rigid walls and a harmonic force")?;
     let found = follow(&dynamics, case, h)?;
@@ -88,7 +88,7 @@ fn follow(d: &Dynamics, case: &Case, h: f64) -> Result<Found, String> {
         let total =
             next * THETA + force * (1.0 - THETA) - d.damping * v - d.stiffness * (q + v * (THETA * h));
         let free = v + inverse * total * h;
-        // The relative speed that Signorini and Newton allow at each wall that the predicted gap touches.
+        // Bounds on the relative speed by Signorini's condition and Newton's restitution, at each wall that the predicted gap reaches.
         let [apart, apart_free] = [v, free].map(|v| v[1] - v[0]);
         let predicted = q[1] - q[0] + 0.5 * h * apart;
         let rebound = -d.restitution * apart;
@@ -130,11 +130,11 @@ mod tests {
         assert!(((coarse / fine).log2() - 2.0).abs() < 0.02, "{coarse:e} {fine:e}");
     }
 
-    /// Impacts are met up to a step late, chatters end by themselves.
+    /// Impacts are detected up to a step late; chatter ends by itself.
     #[test]
     fn order_is_one_with_impacts() {
         let rigid = Numbers { rigid: Some(0.7), ..SSVI };
-        // A spring presses the damper on a wall that pulls away once a period: it chatters, and is held again.
+        // A spring presses the damper on a wall that recedes once a period: it chatters and is held again.
         let chatter = Numbers { k2: 2e4, c2: 100.0, d: 0.0, c: 5.0, rigid: Some(0.5), ..SSVI };
         for (name, numbers) in [("rigid", rigid), ("chatter", chatter)] {
             let case = Case { name, label: "", scene: numbers.scene(), to: 20.0 };

@@ -1,4 +1,4 @@
-//! The interface of a scene to other people's integrators, and the evaluation of their output.
+//! The interface of a scene to third-party integrators, and the evaluation of their output.
 
 use retune_model::{Bare, Coupled, Scene, Side};
 use std::cell::Cell;
@@ -9,7 +9,7 @@ pub const MOST_EVALUATIONS: u64 = 20_000_000;
 /// Which contact forces act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Acting {
-    /// Those that the state implies: steps may cross touch-downs.
+    /// Those that follow from the state: steps may cross touch-downs.
     Any,
     /// None: in flight.
     None,
@@ -76,7 +76,7 @@ impl Equations {
         std::array::from_fn(|i| std::array::from_fn(|j| a[(i, j)]))
     }
 
-    /// The event functions of the phase: it ends when one of them falls through zero.
+    /// The event functions of the phase, which ends when one of them becomes negative.
     pub fn open(&self, y: &[f64; 4]) -> [f64; 2] {
         let Some(coupled) = &self.coupled else { return [1.0; 2] };
         let z = coupled.indentation(y);
@@ -87,8 +87,8 @@ impl Equations {
         }
     }
 
-    /// Changes the phase at an event, slightly (1e-15 m) beyond the wall; true if it was a touch-down. A rigid wall throws the damper back
-    /// at once.
+    /// Changes the phase at an event and moves the damper slightly (1e-15 m) past the wall; true if it was a touch-down. At a rigid wall
+    /// the damper rebounds at once.
     pub fn change(&mut self, y: &mut [f64; 4]) -> bool {
         let open = self.open(y);
         let nearest = if open[0] <= open[1] { Side::Primary } else { Side::Obstacle };

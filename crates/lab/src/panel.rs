@@ -27,7 +27,7 @@ pub const fn look(method: Method) -> (Colour, f64, Shape) {
 pub struct Line {
     /// Its name; an empty one is not written.
     pub name: String,
-    /// Its points. Those beyond the axes are hollow squares on the frame.
+    /// Its points; those beyond the axes are drawn as hollow squares on the frame.
     pub points: Vec<(f64, f64)>,
     pub colour: Colour,
     /// Its width, pt; zero draws points alone.
@@ -42,7 +42,7 @@ impl Line {
     }
 }
 
-/// A panel, `height` pt high; of `lines` the most important is the last.
+/// A panel, `height` pt high; `lines` are in ascending importance.
 pub fn panel(title: &str, x: Axis, y: Axis, lines: Vec<Line>, height: f64) -> Chart {
     let mut layers = Vec::new();
     let mut names = Vec::new();
@@ -79,7 +79,7 @@ pub fn panel(title: &str, x: Axis, y: Axis, lines: Vec<Line>, height: f64) -> Ch
     Chart { title: title.to_owned(), x, y, layers, height }
 }
 
-/// Shades a panel where `x` is at most `floor`: such errors mean nothing.
+/// Shades a panel where `x` is at most `floor`: such errors are meaningless.
 pub fn shade(panel: &mut Chart, floor: f64) {
     let (x, y) = ((panel.x.range().0, floor), (f64::NEG_INFINITY, f64::INFINITY));
     panel.layers.insert(0, Layer::Band { x, y, colour: GREY, opacity: 0.18 });

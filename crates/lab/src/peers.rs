@@ -1,4 +1,4 @@
-//! Other people's integrators, each wrapped as a function that follows one phase of the motion.
+//! Third-party integrators, each wrapped as a function that follows one phase of the motion.
 
 mod with_diffeq;
 mod with_diffsol;
@@ -9,14 +9,14 @@ use crate::runs::{Found, Timing, timed};
 use crate::scenes::Case;
 use std::panic::{self, AssertUnwindSafe};
 
-/// Integrates the motion from `y` between two times; returns the state reached, and whether an event ended it. If there is a track,
-/// the motion is passed to it.
+/// Integrates the motion from `y` between two times and passes it to the track, if any. Returns the time and state reached, and
+/// whether an event ended it.
 pub type Piece =
     fn(&Equations, (f64, [f64; 4]), f64, f64, Option<&mut Track>) -> Result<(f64, [f64; 4], bool), String>;
 
 /// An integrator of another program.
 pub struct Peer {
-    /// With its version.
+    /// Name and version.
     pub program: &'static str,
     pub method: &'static str,
     /// Integrates one phase.
@@ -85,7 +85,7 @@ fn follow(
     Err(format!("more than {MOST_EVENTS} events: stuck at t = {t} s"))
 }
 
-/// A run of a peer. The time is that of the motion alone: unlike Retune's, it does not contain the search for E1max.
+/// A run of a third-party integrator. Unlike Retune's, the time excludes the search for E1max.
 pub fn run(peer: &Peer, case: &Case, located: bool, rtol: f64, is_timed: bool) -> Result<Found, String> {
     let spacing = if case.name == "near-rigid" { 2e-5 } else { 2e-4 };
     let mut track = Track::new(spacing);

@@ -1,4 +1,4 @@
-//! The tables of the atlas read back: its charts are drawn from what is written.
+//! Reads the tables of the atlas: its charts are drawn from the written files.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ pub fn records(table: &str) -> Vec<Record<'_>> {
     lines.map(|line| head.iter().copied().zip(line.split(',')).collect()).collect()
 }
 
-/// The number in a column; NaN where there is none.
+/// The number in a column; NaN if there is none.
 pub fn number(row: &Record<'_>, column: &str) -> f64 {
     row.get(column).and_then(|text| text.parse().ok()).unwrap_or(f64::NAN)
 }

@@ -14,7 +14,7 @@ pub const REFERENCE: f64 = 1e-13;
 pub struct Reference {
     /// The hybrid at rtol 1e-13.
     pub found: Found,
-    /// The larger of two differences from it, of the hybrid at 1e-12 and of DOP853 with located contacts: E1max, final state, impact times (s).
+    /// The larger difference from it of the hybrid at 1e-12 and an independent method: E1max, final state, impact times (s).
     pub uncertainty: [f64; 3],
     /// The largest Lyapunov exponent of the settled motion, 1/s; `None` without a damper (there it is `-c1 / (2 m1)`).
     pub exponent: Option<Exponent>,
@@ -22,7 +22,7 @@ pub struct Reference {
     pub parting: Option<f64>,
 }
 
-/// DOP853 at 1e-13; between rigid walls, which no general method of Retune knows, that of another program, if it is built.
+/// DOP853 at 1e-13; with rigid walls, which Retune's general methods do not support, the DOP853 of another program, if it is built.
 fn independent(case: &Case) -> Any<Option<Found>> {
     if system(&case.scene).is_some_and(|system| system.is_rigid()) {
         return of_a_peer(case);
@@ -58,14 +58,14 @@ impl Reference {
         Ok(Self { found, uncertainty, exponent, parting: parting_rate(case)? })
     }
 
-    /// Lyapunov time, s: in which neighbours diverge by a factor e, by the larger of the two rates; `None` if they converge.
+    /// Lyapunov time, s, in which neighbours diverge by a factor e at the larger of the two rates; `None` if they do not diverge.
     pub fn lyapunov_time(&self) -> Option<f64> {
         let rates = [self.parting, self.exponent.map(|e| e.value)];
         let rate = rates.into_iter().flatten().fold(f64::NEG_INFINITY, f64::max);
         (rate > 1e-3).then_some(1.0 / rate)
     }
 
-    /// Time over which the motion can be predicted to 1e-6 in double precision: `ln 1e10` Lyapunov times, s.
+    /// Time over which the motion can be predicted to 1e-6 in double precision, s: `ln 1e10` Lyapunov times.
     pub fn horizon(&self) -> f64 {
         self.lyapunov_time().map_or(f64::INFINITY, |time| 1e10_f64.ln() * time)
     }

@@ -1,4 +1,4 @@
-//! One run of one method at one tolerance: Retune's own, those of other programs, and their lines in `runs.csv`.
+//! Single runs of one method at one tolerance, by Retune and by other programs, and their rows in `runs.csv`.
 
 use crate::scenes::Case;
 use retune_jobs::methods;
@@ -29,7 +29,7 @@ pub struct Found {
     pub time: Timing,
 }
 
-/// The least of the times of several runs, s, and how far their median is above it, as a share; NaN where none or one was timed.
+/// The least time of several runs, s, and the relative excess of their median; the latter is NaN for one run, both for none.
 #[derive(Clone, Copy, Debug)]
 pub struct Timing {
     pub least: f64,
@@ -57,8 +57,8 @@ pub struct Row {
     pub expected_impacts: usize,
 }
 
-/// Relative errors of E1max and of the final state (positions weighed by ω), and the largest error of an impact time (s), NaN
-/// where the counts differ.
+/// Relative errors of E1max and of the final state (positions weighted by ω), and the largest error of an impact time (s), NaN
+/// if the counts differ.
 pub fn errors(found: &Found, reference: &Found, omega: f64) -> [f64; 3] {
     let states = [found.final_state, reference.final_state];
     let [e1, state] = methods::errors([found.e1_max, reference.e1_max], states, omega);
@@ -72,7 +72,7 @@ pub fn errors(found: &Found, reference: &Found, omega: f64) -> [f64; 3] {
 }
 
 impl Row {
-    /// That of a run: `way` is its program, its method and how it treats contacts.
+    /// The row of a run.
     pub fn of(
         case: &Case,
         reference: &Found,
@@ -145,7 +145,7 @@ fn number(text: &str) -> f64 {
     text.parse().unwrap_or(f64::NAN)
 }
 
-/// Reads [`csv`]'s table back, for the names of scenes given; states and times of touch-downs are not in it.
+/// Reads a table written by [`csv`] for the given scene names; it has no states and no touch-down times.
 pub fn parse(text: &str, scenes: &[&'static str]) -> Vec<Row> {
     let columns: Vec<&str> = HEAD.split(',').collect();
     let line = |line: &str| {
@@ -175,7 +175,7 @@ pub fn parse(text: &str, scenes: &[&'static str]) -> Vec<Row> {
     text.lines().skip(1).filter_map(line).collect()
 }
 
-/// Times a run several times: after a warm-up 100 times if it takes less than a millisecond, else fewer.
+/// Times a run repeatedly: after a warm-up, 100 times if it takes less than a millisecond, else fewer.
 pub fn timed<T>(mut run: impl FnMut() -> T) -> Timing {
     let mut once = || {
         let begun = Instant::now();
@@ -201,7 +201,7 @@ pub fn settings(method: Method, contacts: Contacts, setting: f64) -> Settings {
     methods::settings(method, contacts, setting, MOST_STEPS)
 }
 
-/// All results of one run; the time is that of finding E1max alone.
+/// All results of one run; the time is that of computing E1max alone.
 pub fn run(case: &Case, settings: &Settings, is_timed: bool) -> Result<Found, String> {
     let window = Window { from: 0.0, to: case.to };
     let response = simulate(&case.scene, window, settings).map_err(|e| e.to_string())?;
@@ -244,7 +244,7 @@ pub fn follow(
     Ok(run.state())
 }
 
-/// Counts touch-downs, and is satisfied with so many.
+/// Counts touch-downs, and is satisfied after `enough`.
 pub struct Touches {
     pub count: u64,
     pub enough: u64,
@@ -260,7 +260,7 @@ impl Observer<4> for Touches {
     }
 }
 
-/// The ways of a method to treat contacts, each in a word.
+/// The treatments of contacts that a method supports, each with its name.
 pub fn ways(method: Method) -> &'static [(Contacts, &'static str)] {
     match method {
         Method::Hybrid => &[(Contacts::Located, "exact")],
@@ -268,7 +268,7 @@ pub fn ways(method: Method) -> &'static [(Contacts, &'static str)] {
     }
 }
 
-/// How a method treats contacts, in a word.
+/// The name of the treatment of contacts.
 pub fn way(settings: &Settings) -> &'static str {
     let own = ways(settings.method).iter().find(|(contacts, _)| *contacts == settings.contacts);
     own.map_or("exact", |(_, name)| name)
@@ -277,7 +277,7 @@ pub fn way(settings: &Settings) -> &'static str {
 /// CVODE on the scenes of a file, compiled by the recipes from C.
 const CVODE: &str = "target/cvode";
 
-/// The lines that it writes; `None` where it has not been built.
+/// The output of CVODE for the scenes of a file; `None` if it has not been built.
 pub fn cvode(scenes: &str) -> Option<String> {
     let output = Command::new(CVODE).arg(scenes).stderr(Stdio::null()).output().ok()?;
     Some(String::from_utf8_lossy(&output.stdout).into_owned())
@@ -286,7 +286,7 @@ pub fn cvode(scenes: &str) -> Option<String> {
 /// Tables of the runs of interpreted programs, made by `just lab accuracy-external`.
 const TABLES: [&str; 2] = ["tests/reference/external/octave.csv", "tests/reference/external/scipy.csv"];
 
-/// The lines of those tables; none where one is missing.
+/// The lines of those tables; a missing one is skipped.
 pub fn external() -> io::Result<String> {
     let mut all = String::new();
     for table in TABLES {

@@ -80,7 +80,7 @@ pub fn csv(savings: &[Saving]) -> String {
     format!("scene,model,seconds,seconds_of_full_model,E1max,E1max_of_full_model\n{rows}")
 }
 
-/// Reads [`csv`]'s table back.
+/// Reads a table written by [`csv`].
 pub fn parse(table: &str) -> Vec<Saving> {
     let of = |row: &Record<'_>| {
         let pair = |name: &str| [number(row, name), number(row, &format!("{name}_of_full_model"))];

@@ -6,9 +6,9 @@ pub use retune_testkit::scenes::{Numbers, ROW1, SSVI, TMD};
 
 /// A scene and the span of time over which its motion can be predicted.
 pub struct Case {
-    /// In tables.
+    /// Name in tables.
     pub name: &'static str,
-    /// On a chart.
+    /// Label on charts.
     pub label: &'static str,
     pub scene: Scene,
     /// End of the run, s.
@@ -21,20 +21,20 @@ impl Case {
     }
 }
 
-/// The SSVI with the Hertz stiffness of its contacts so many times as large.
+/// The SSVI with the Hertz stiffness of its contacts multiplied by `factor`.
 pub fn stiffer(factor: f64) -> Numbers {
     Numbers { q: SSVI.q * factor, ..SSVI }
 }
 
-/// Damping at which the SSVI's damper alone does not oscillate, N·s/m.
+/// Critical damping of the SSVI's damper alone, N·s/m.
 pub fn critical_damping() -> f64 {
     2.0 * (SSVI.k2 * SSVI.m2).sqrt()
 }
 
-/// A spring presses the damper on its wall, 2 mm from where it rests, for half of a period: it chatters there until it stays, and leaves.
+/// For half of each period a spring presses the damper on its wall, 2 mm from its rest position: it chatters, is held, and leaves again.
 pub const CHATTER: Numbers = Numbers { k2: 5e3, c2: 100.0, d: 0.002, c: 5.0, e: 0.5, ..SSVI };
 
-/// The scenes: six of the paper's contacts, three of contacts that lose energy, and three where a damper is held, creeps or chatters.
+/// The scenes: six with the paper's contacts, three with contacts that lose energy, and three where a damper is held, creeps or chatters.
 pub fn cases() -> Vec<Case> {
     let near_critical = Numbers { c2: critical_damping(), ..SSVI };
     [

@@ -1,4 +1,4 @@
-//! The manifest of results, with their scenes beside it, from which `retune verify` runs their rows again.
+//! The manifest of results and the file with their scenes, from which `retune verify` reruns their rows.
 
 use crate::Any;
 use crate::scenes::Case;
@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// Writes both into a directory, for the files that stand there.
+/// Writes both into a directory, for the files there.
 pub fn seal<'a>(folder: &Path, kind: &Kind, plan: Value, cases: impl Iterator<Item = &'a Case>) -> Any<()> {
     let study = |case: &Case| -> Any<(String, Study)> {
         let study = Study {

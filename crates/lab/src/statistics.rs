@@ -21,7 +21,7 @@ pub struct Statistics {
     pub error: f64,
     /// The value that E1 exceeds 1 % of the time, J.
     pub exceeded: f64,
-    /// A second.
+    /// Impacts per second.
     pub impacts: f64,
 }
 

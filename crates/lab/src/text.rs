@@ -1,4 +1,4 @@
-//! The results of the charts in words and numbers: `results/accuracy/README.md`.
+//! The text on the charts' results: `results/accuracy/README.md`.
 
 use crate::curves::{Curve, Measure, curves};
 use crate::moreau_jean::STEPPER;
@@ -73,7 +73,7 @@ const HOW_TO_READ: &str = "\n## How to read the charts\n\nAn error counts only i
     Between rigid walls contacts are always located, but by the time stepper.\n\n\
     ![error of E1max against evaluations](evaluations.svg)\n![error of the final state against time](state.svg)\n";
 
-/// Machine, compilers, commit, and how far times scatter.
+/// Machine, compilers, commit, and the scatter of times.
 fn made(out: &mut String, machine: &str, rows: &[Row]) {
     let spreads = rows.iter().filter_map(|row| Some(row.found.as_ref().ok()?.time.spread));
     let mut spreads: Vec<f64> = spreads.filter(|spread| spread.is_finite()).collect();
@@ -92,7 +92,7 @@ fn made(out: &mut String, machine: &str, rows: &[Row]) {
     );
 }
 
-/// The least times to an error of compiled programs, ascending, s.
+/// The least times in which compiled programs reach an error level, ascending, s.
 fn costs<'a>(curves: &'a [Curve<'a>], level: f64) -> Vec<(f64, &'a Curve<'a>)> {
     let compiled = curves.iter().filter(|c| !c.is_interpreted());
     let mut costs: Vec<_> = compiled.filter_map(|c| Some((c.cost_at(level)?.0, c))).collect();
@@ -144,7 +144,7 @@ fn in_short(out: &mut String, cases: &[Case], rows: &[Row]) {
     }
 }
 
-/// Loosest decade of the hybrid's rtol whose error of E1max stays below a level on all scenes; the longest run there, s.
+/// The loosest decade of rtol at which the hybrid's error of E1max stays below a level on all scenes, and its longest run there, s.
 fn loosest(cases: &[Case], rows: &[Row], level: f64) -> (f64, f64) {
     let all: Vec<_> = cases.iter().map(|case| curves(rows, case, Measure::E1max)).collect();
     let hybrids = || all.iter().flatten().filter(|c| c.name == "hybrid");

@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 /// interpreter's lock is released.
 ///
 /// # Errors
-/// They are no numbers: `retune.StudyError` with `name`.
+/// They are not numbers: `retune.StudyError` with `name`.
 pub fn numbers(values: &Bound<'_, PyAny>, name: &str) -> PyResult<(Vec<f64>, Vec<usize>)> {
     let convert = values.py().import("retune._arrays")?.getattr("floats")?;
     let array = convert.call1((values, name))?;
@@ -18,7 +18,7 @@ pub fn numbers(values: &Bound<'_, PyAny>, name: &str) -> PyResult<(Vec<f64>, Vec
     Ok((numbers.as_slice().map_err(|error| internal(&error.to_string()))?.to_vec(), array.shape().to_vec()))
 }
 
-/// A row of 64-bit numbers as most callers give it, copied into `row`; false if it has to be converted.
+/// Copies a row that is already a 64-bit array, the usual case, into `row`; false if it has to be converted.
 pub fn plain_row(values: &Bound<'_, PyAny>, row: &mut [f64]) -> bool {
     let Ok(array) = values.cast::<PyArray1<f64>>() else { return false };
     let aligned = array.data().align_offset(align_of::<f64>()) == 0;
@@ -32,10 +32,10 @@ pub fn plain_row(values: &Bound<'_, PyAny>, row: &mut [f64]) -> bool {
     })
 }
 
-/// Columns by their names, each a numpy array.
+/// A dictionary of named columns as numpy arrays.
 ///
 /// # Errors
-/// There is no memory for them.
+/// Out of memory.
 pub fn table<'py>(
     py: Python<'py>,
     columns: impl IntoIterator<Item = (String, Vec<f64>)>,

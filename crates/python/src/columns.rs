@@ -1,4 +1,4 @@
-//! What is told of an evaluation, column by column.
+//! The results of an evaluation as columns.
 
 use crate::errors::Fault;
 use rayon::prelude::*;
@@ -7,17 +7,17 @@ use retune_optim::{Evaluation, Limit};
 
 /// The number of columns.
 pub const COUNT: usize = 6;
-/// Rows without a value whose exceptions are kept.
-pub const TOLD: usize = 100;
-/// What a row without a value has.
+/// Most rows without a value whose exceptions are kept.
+pub const MAX_EXCEPTIONS: usize = 100;
+/// The numbers of a row without a value.
 const NOTHING: [f64; COUNT] = [f64::INFINITY, f64::NAN, f64::NAN, f64::NAN, f64::NAN, f64::NAN];
 
-/// The names of [`numbers_of`], the second of which is that of a quantity.
+/// The names of the columns of [`numbers_of`]; the second is the objective's quantity.
 pub fn column_names(quantity: &'static str) -> [&'static str; COUNT] {
     ["value", quantity, "stroke", "contact_force", "violation", "omega_worst"]
 }
 
-/// What is known of an evaluation beside its quantity, which is known in any case.
+/// Which quantities of an evaluation are known beside its own.
 #[derive(Clone, Copy)]
 pub struct Known {
     pub quantity: Measure,
@@ -25,7 +25,8 @@ pub struct Known {
     pub force: bool,
 }
 
-/// What an evaluation found, by [`column_names`]; stroke and force are NaN unless they are known, and so is the frequency of what has none.
+/// The results of an evaluation in the order of [`column_names`]; NaN for a stroke or force that is not known, and for the frequency if
+/// there is none.
 pub fn numbers_of(found: &Evaluation, Known { quantity, stroke, force }: Known) -> [f64; COUNT] {
     let known = |measure, known| match known {
         true => found.reached.get(Limit::Of(measure)),
@@ -41,8 +42,8 @@ pub fn numbers_of(found: &Evaluation, Known { quantity, stroke, force }: Known) 
 /// The columns of a batch.
 type Columns = [Vec<f64>; COUNT];
 
-/// The rows of designs as columns, evaluated in parallel, and those without a value in their order, each with the reason. The rows are written
-/// where they belong as they are found, so that nothing is left to do on one thread.
+/// Evaluates the rows of designs in parallel and returns them as columns, with the rows without a value in order, each with its reason.
+/// Each row is written to its place when it is found, so that no serial work remains.
 pub fn in_columns(
     designs: &[f64],
     width: usize,

@@ -1,4 +1,4 @@
-//! From every error to one of the package's exceptions, which `retune/_errors.py` defines.
+//! Converts every error to one of the package's exceptions, which `retune/_errors.py` defines.
 
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -22,17 +22,17 @@ pub enum Fault {
     },
     /// A run could not be finished.
     Solver(SolverError),
-    /// Anything else that the library refuses.
+    /// Any other error of the library.
     Other(String),
-    /// What Python itself raised: Ctrl-C, or an error in the user's function.
+    /// An exception raised by Python: Ctrl-C, or an error in the user's function.
     Python(PyErr),
 }
 
 /// A refused value.
 pub enum Given {
-    /// It is not one value, or not known.
+    /// Not a single value, or not known.
     Nothing,
-    /// A number; JSON has not all of them.
+    /// A number, which JSON may not be able to hold.
     Number(f64),
     /// A value of a study.
     Json(Value),
@@ -54,7 +54,7 @@ impl Fault {
         Self::study(rule.to_string(), Given::Nothing)
     }
 
-    /// The error of a study whose text is at hand; `whole` messages name the file and the place in it.
+    /// The error of a study with a known text; `whole` messages name the file and the position in it.
     pub fn of_study(error: &StudyError, text: &str, whole: bool) -> Self {
         let problem = match error {
             StudyError::Field { problem, .. } => problem.clone(),
@@ -167,15 +167,15 @@ fn raised(py: Python<'_>, fault: Fault) -> PyResult<PyErr> {
     Ok(PyErr::from_value(exception))
 }
 
-/// What a panic becomes: it is a mistake in Retune, and the program that called goes on.
+/// Converts a panic, which is a bug in Retune, into an error, so that the calling program goes on.
 pub fn of_panic(payload: &(dyn std::any::Any + Send)) -> Fault {
     let words = payload.downcast_ref::<&str>().map(|words| (*words).to_owned());
     let words = words.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_default();
     Fault::Other(format!("a mistake in Retune, please report it: {words}"))
 }
 
-/// The path of the field that a message is about. A message about a field begins with it, one about a field that is unknown with its
-/// parent.
+/// The path of the field that a message is about. A message about a field begins with its path, one about an unknown field with the
+/// path of its parent.
 fn field_of(message: &str) -> Option<String> {
     for unknown in ["unknown field `", "unknown parameter `"] {
         if let Some((parent, rest)) = message.split_once(unknown) {

@@ -1,4 +1,4 @@
-//! The jobs whose answer is the files that they write, from a study file and options: each as the command line calls it.
+//! Jobs on a study file whose results are files, called as by the command line.
 
 use crate::errors::{Fault, Given};
 use crate::jobs;
@@ -17,7 +17,7 @@ use serde::Deserialize;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-/// What a job is asked, beside its study file and [`jobs::JobOptions`].
+/// The arguments of a job, in addition to its study file and [`jobs::JobOptions`].
 #[derive(Deserialize)]
 #[serde(rename_all = "lowercase")]
 enum Job {
@@ -33,7 +33,7 @@ enum Job {
     Retention(Vec<f64>),
 }
 
-/// A sweep as it is typed.
+/// The arguments of a sweep, as typed.
 #[derive(Deserialize)]
 struct Swept {
     over: String,
@@ -103,7 +103,7 @@ fn out_of_one(request: &Request) -> Result<PathBuf, Error> {
 }
 
 impl Swept {
-    /// The table as `sweep.json` has it; null of a share.
+    /// The table in the form of `sweep.json`; null for a share.
     fn made(self, request: &Request, monitor: &Monitor) -> Result<String, Fault> {
         let Self { over, from, to, points, log, quantities, objective, shard, merge } = self;
         let over = read("over", &over)?;

@@ -1,7 +1,7 @@
-//! What takes seconds to hours: searches, certificates, verification. The files are those of the command line, to the last byte.
+//! Work of seconds to hours: searches, certificates, verification. The files are identical to those of the command line.
 
 use crate::errors::{Fault, Given};
-use crate::monitor::{caught, monitored, on_pool};
+use crate::monitor::{catch_panic, monitored, on_pool};
 use crate::pool::{check, pool};
 use crate::problem::{Core, json};
 use pyo3::prelude::*;
@@ -51,7 +51,7 @@ pub fn study_text(path: PathBuf) -> PyResult<String> {
         })?;
         json(&study.whole())
     };
-    Ok(caught(read)?)
+    Ok(catch_panic(read)?)
 }
 
 /// Makes the whole search of a problem; returns the directory of its results.
@@ -68,7 +68,7 @@ pub fn optimize(
     let study = &core.study;
     let mut request = asked.request(PathBuf::new())?;
     let out = request.out_of(study);
-    // A problem that no file says is made of what is written beside its results.
+    // The origin of a problem without a file is the study written with its results.
     request.study = core.file.as_ref().map_or_else(|| out.join("study.json"), PathBuf::from);
     monitored(py, tell.as_ref(), |monitor| {
         tune::tune_study(study, &request, monitor)?;
@@ -123,7 +123,7 @@ pub fn design_study(requirements: &str, kind: &str) -> PyResult<String> {
         let requirements = specification.within("damper").requirements()?;
         json(&if kind == "TMD" { requirements.tmd()? } else { requirements.ssvi()? })
     };
-    Ok(caught(made)?)
+    Ok(catch_panic(made)?)
 }
 
 /// How every periodic motion of a study, or of the design behind results, is looked for: the parameter, its range, the values at which

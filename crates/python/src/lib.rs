@@ -1,12 +1,12 @@
-//! Retune as a Python package: conversion, exceptions and nothing else. What is computed, and what is allowed, is said by the libraries.
+//! Retune as a Python package: conversion and exceptions only. The libraries define what is computed and what is allowed.
 //!
-//! A problem is a study (`retune_study`): Python builds its JSON, the study's own rules check it, and answers go back as numpy arrays or
-//! as JSON. `python/retune` is what users see; this module is its private `_core`.
+//! A problem is a study (`retune_study`): Python builds its JSON, the study's own rules check it, and answers are returned as numpy
+//! arrays or as JSON. Users see `python/retune`; this module is its private `_core`.
 //!
-//! - `errors`: from every error to one of the package's exceptions.
+//! - `errors`: conversion of errors to the package's exceptions.
 //! - `arrays`: numbers from numpy and back.
-//! - `columns`: what is told of an evaluation.
-//! - `monitor`: long work without the interpreter's lock, which Ctrl-C ends and which tells how far it is.
+//! - `columns`: the results of an evaluation as columns.
+//! - `monitor`: long work without the interpreter's lock, with progress and Ctrl-C.
 //! - `pool`: the threads that an evaluation may use.
 //! - `problem`: a study as a function of a design; `motion`: its runs and sweeps; `jobs`: what takes minutes and writes files;
 //!   `files`: the jobs whose answer is their files.

@@ -1,10 +1,10 @@
-//! Long work without the interpreter's lock: Ctrl-C ends it, and it tells how far it is.
+//! Long work without the interpreter's lock: Ctrl-C ends it, and it reports its progress.
 //!
-//! The work is done on other threads: a job on one of its own ([`monitored`]), anything else on a pool ([`on_pool`]). The thread that called
-//! waits for it, and now and then takes the lock to let Python handle its signals and to pass on what the work has to tell.
+//! The work runs on other threads: a job on its own thread ([`monitored`]), anything else on a pool ([`on_pool`]). The calling thread waits
+//! for it and periodically takes the lock to let Python handle signals and to report progress.
 
 use crate::errors::{Fault, of_panic};
-use crate::pool::give_up;
+use crate::pool::abandon_pools;
 use pyo3::prelude::*;
 use rayon::ThreadPool;
 use retune_jobs::{Error, Observer, Progress};
@@ -15,10 +15,10 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// Between two looks at signals and progress.
-const LOOK_EVERY: Duration = Duration::from_millis(50);
+/// Time between two checks for signals and progress.
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
-/// What a piece of work tells, and whether it is to end.
+/// The progress of a piece of work, and the request to stop it.
 #[derive(Clone, Default)]
 pub struct Monitor(Arc<State>);
 
@@ -39,12 +39,12 @@ struct Stage {
     finished: AtomicBool,
 }
 
-/// The work was stopped: what unwinds, silently, through a job that has no other way to end before its time. Everything computed so far
-/// is in its journal.
+/// The payload that silently unwinds a job that was stopped: it has no other way to end early. Everything computed so far is in its
+/// journal.
 struct Stopped;
 
 impl Monitor {
-    /// Whether the work is to end.
+    /// Whether the work should stop.
     pub fn is_stopped(&self) -> bool {
         self.0.stopped.load(Relaxed)
     }
@@ -53,25 +53,25 @@ impl Monitor {
         self.0.stopped.store(true, Relaxed);
     }
 
-    /// Ends the job if that was asked for.
+    /// Unwinds the job if it should stop.
     fn end_if_stopped(&self) {
         if self.is_stopped() {
             resume_unwind(Box::new(Stopped));
         }
     }
 
-    /// The file with the answer of a job that was made.
+    /// The file with the answer of a finished job.
     pub fn answer(&self) -> Option<PathBuf> {
         self.0.answer.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    fn tell(&self, kind: &'static str, words: &str) {
+    fn push_line(&self, kind: &'static str, words: &str) {
         let mut lines = self.0.lines.lock().unwrap_or_else(PoisonError::into_inner);
         lines.push((kind, words.to_owned()));
     }
 
-    /// Passes on what there is to tell: `to(kind, words, done, known, count)`.
-    fn pass_on(&self, py: Python<'_>, to: Option<&Py<PyAny>>) -> PyResult<()> {
+    /// Reports new lines and the progress of the stage: `to(kind, words, done, known, count)`.
+    fn report(&self, py: Python<'_>, to: Option<&Py<PyAny>>) -> PyResult<()> {
         let lines = std::mem::take(&mut *self.0.lines.lock().unwrap_or_else(PoisonError::into_inner));
         let stage = self.0.stage.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let Some(to) = to else { return Ok(()) };
@@ -87,8 +87,8 @@ impl Monitor {
     }
 }
 
-/// Does `work` on a pool, while the thread that called looks for Ctrl-C: that ends the wait at once. What has begun goes on until it next
-/// asks [`Monitor::is_stopped`], and nobody waits for it.
+/// Does `work` on a pool while the calling thread checks for Ctrl-C, which ends the wait at once. The work then runs on until it next
+/// checks [`Monitor::is_stopped`], but nobody waits for it.
 ///
 /// # Errors
 /// The error of the work, or Ctrl-C.
@@ -101,17 +101,17 @@ pub fn on_pool<T: Send + 'static>(
     let own = monitor.clone();
     let (answers, answer) = mpsc::sync_channel(1);
     pool.spawn(move || {
-        // Nobody may wait for it any more.
-        let _ = answers.send(caught(|| work(&own)));
+        // Fails if nobody waits for the answer any more.
+        let _ = answers.send(catch_panic(|| work(&own)));
     });
     let found = py.detach(move || {
         loop {
-            match answer.recv_timeout(LOOK_EVERY) {
+            match answer.recv_timeout(POLL_INTERVAL) {
                 Ok(found) => return found,
                 Err(RecvTimeoutError::Timeout) => {
                     if let Err(error) = Python::attach(|py| py.check_signals()) {
                         monitor.stop();
-                        give_up();
+                        abandon_pools();
                         return Err(Fault::Python(error));
                     }
                 }
@@ -126,7 +126,7 @@ fn no_answer() -> Fault {
     Fault::Other("the work ended without an answer".to_owned())
 }
 
-/// Does `work` on a thread of its own, to the end whatever ends it. `tell` is called with what the [`Monitor`] is told.
+/// Does `work` on its own thread and waits until it has ended, even after an error. Calls `tell` with what the [`Monitor`] receives.
 ///
 /// # Errors
 /// The error of the work, Ctrl-C, or an exception of `tell`.
@@ -136,26 +136,26 @@ pub fn monitored<T: Send>(
     work: impl FnOnce(&Monitor) -> Result<T, Fault> + Send,
 ) -> PyResult<T> {
     let monitor = Monitor::default();
-    let looked = py.detach(|| {
+    let result_of_work = py.detach(|| {
         let (answers, answer) = mpsc::sync_channel(1);
         std::thread::scope(|scope| {
             let own = monitor.clone();
             let thread =
                 std::thread::Builder::new().name("retune".to_owned()).spawn_scoped(scope, move || {
-                    // The receiver is there until this thread has ended.
-                    let _ = answers.send(caught(|| work(&own)));
+                    // The receiver outlives this thread.
+                    let _ = answers.send(catch_panic(|| work(&own)));
                 });
             if let Err(error) = thread {
                 return Err(Fault::Other(format!("cannot start a thread: {error}")));
             }
             let mut raised = None;
             loop {
-                match answer.recv_timeout(LOOK_EVERY) {
+                match answer.recv_timeout(POLL_INTERVAL) {
                     Ok(found) => return raised.map_or(found, |error| Err(Fault::Python(error))),
                     Err(RecvTimeoutError::Timeout) if raised.is_none() => {
-                        let look =
-                            |py: Python<'_>| py.check_signals().and_then(|()| monitor.pass_on(py, tell));
-                        raised = Python::attach(look).err();
+                        let poll =
+                            |py: Python<'_>| py.check_signals().and_then(|()| monitor.report(py, tell));
+                        raised = Python::attach(poll).err();
                         if raised.is_some() {
                             monitor.stop();
                         }
@@ -168,16 +168,16 @@ pub fn monitored<T: Send>(
             }
         })
     });
-    let found = looked?;
-    monitor.pass_on(py, tell)?;
+    let found = result_of_work?;
+    monitor.report(py, tell)?;
     Ok(found)
 }
 
-/// Does `work`; a panic becomes an error, for none may cross the border.
+/// Does `work` and converts a panic to an error, since it must not unwind into Python.
 ///
 /// # Errors
 /// Its own, or a panic.
-pub fn caught<T>(work: impl FnOnce() -> Result<T, Fault>) -> Result<T, Fault> {
+pub fn catch_panic<T>(work: impl FnOnce() -> Result<T, Fault>) -> Result<T, Fault> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|payload| Err(of_panic(&*payload)))
 }
 
@@ -187,16 +187,16 @@ impl Observer for Monitor {
     }
     fn result(&self, line: &str) -> Result<(), Error> {
         self.end_if_stopped();
-        self.tell("result", line);
+        self.push_line("result", line);
         Ok(())
     }
     fn log(&self, line: &str) -> Result<(), Error> {
         self.end_if_stopped();
-        self.tell("log", line);
+        self.push_line("log", line);
         Ok(())
     }
     fn warn(&self, words: &str) {
-        self.tell("warning", words);
+        self.push_line("warning", words);
     }
     fn begin(&self) {
         self.end_if_stopped();

@@ -19,7 +19,7 @@ const MOST_ROWS: f64 = 1e7;
 /// The columns of a motion.
 const COLUMNS: [&str; 9] = ["t", "x1", "v1", "x2", "v2", "E1", "E2", "FconL", "FconR"];
 
-/// What came of a run: its rows, its events, the name of each event and the wall of its contact, and its summary as JSON.
+/// The results of a run: its rows, its events, the name of each event and the wall of its contact, and its summary as JSON.
 type Ran<'py> = (Bound<'py, PyDict>, Bound<'py, PyDict>, Vec<(&'static str, &'static str)>, String);
 /// The columns of a sweep, and the unit of each.
 type Swept<'py> = (Bound<'py, PyDict>, Vec<(String, String)>);
@@ -122,7 +122,7 @@ fn swept(study: Study, over: &str, values: &[f64], objective: bool) -> Result<Sw
         return Err(Fault::argument(over, *value, "finite numbers"));
     }
     let [from, to] = [f64::min, f64::max].map(|end| values.iter().copied().fold(values[0], end));
-    // Only the ends are asked for, to be checked; those of a sweep differ.
+    // Only the ends are used, for the checks; they must differ in a sweep.
     let to = if from == to { 2.0 * from.abs() + 1.0 } else { to };
     let plan = Plan {
         over: parameter,

@@ -1,7 +1,7 @@
 //! The threads that an evaluation may use: a pool of this process, never rayon's own.
 //!
-//! `multiprocessing` forks: a child inherits the memory of its parent and none of its threads, so that a pool of the parent would be
-//! waited for forever. A pool is therefore known by the process that made it.
+//! `multiprocessing` may fork: a child inherits the memory of its parent but none of its threads, so that it would wait for the
+//! parent's pool forever. Pools are therefore stored with the id of the process that made them.
 
 use crate::errors::Fault;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -10,12 +10,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Most threads that may be asked for.
 pub const MOST_THREADS: u16 = 1024;
 
-/// The pools of a process, by its number: the one of all cores, and the last of another number of threads.
+/// The pools of a process, with its id: the one of all cores, and the last one of another size.
 type Pools = (u32, [Option<(u16, Arc<ThreadPool>)>; 2]);
 
 static POOLS: Mutex<Pools> = Mutex::new((0, [None, None]));
 
-/// A pool of this many threads, by default one a core. The last is kept, so that not every batch starts threads.
+/// A pool of this many threads, by default one per core. The last is kept, so that not every batch starts threads.
 ///
 /// # Errors
 /// Their number is not allowed, or they cannot be started.
@@ -23,7 +23,7 @@ pub fn pool(threads: Option<i64>) -> Result<Arc<ThreadPool>, Fault> {
     let threads = threads.map_or(Ok(0), check)?;
     let mut kept = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     if kept.0 != std::process::id() {
-        // The threads of a parent cannot be waited for.
+        // Dropping the parent's pools would wait for threads that do not exist here.
         std::mem::forget(std::mem::replace(&mut *kept, (std::process::id(), [None, None])));
     }
     let place = &mut kept.1[usize::from(threads != 0)];
@@ -35,8 +35,8 @@ pub fn pool(threads: Option<i64>) -> Result<Arc<ThreadPool>, Fault> {
     Ok(Arc::clone(&place.insert((threads, Arc::new(pool))).1))
 }
 
-/// Gives the present pools up: what they have begun goes on, and what comes next has threads of its own.
-pub fn give_up() {
+/// Abandons the current pools: their work runs on, and later work gets new threads.
+pub fn abandon_pools() {
     POOLS.lock().unwrap_or_else(PoisonError::into_inner).1 = [None, None];
 }
 

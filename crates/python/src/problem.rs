@@ -1,9 +1,9 @@
 //! A study as a function of a design.
 
 use crate::arrays::{numbers, plain_row, table};
-use crate::columns::{COUNT, Known, TOLD, column_names, in_columns, numbers_of};
+use crate::columns::{COUNT, Known, MAX_EXCEPTIONS, column_names, in_columns, numbers_of};
 use crate::errors::{Fault, Given};
-use crate::monitor::{caught, on_pool};
+use crate::monitor::{catch_panic, on_pool};
 use crate::pool::pool;
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -18,19 +18,19 @@ use std::sync::Arc;
 #[pyclass(subclass, frozen, module = "retune._core")]
 pub struct Core {
     pub(crate) study: Study,
-    /// What its results are said to be made of: the file that it was read from, if any.
+    /// The file that it was read from, if any, which its results name as their origin.
     pub(crate) file: Option<String>,
     objective: Option<Arc<DesignObjective>>,
-    /// Whether one evaluation may take long: it makes many runs, or a long one.
+    /// Whether one evaluation may take long: many runs, or a long one.
     takes_long: bool,
-    /// What is known beside the quantity: what a limit asks for, and the stroke of a steady motion.
-    knows: Known,
+    /// The quantities known beside the objective's: those with a limit, and the stroke of a steady motion.
+    known: Known,
 }
 
 /// The columns of a batch, and the rows without a value, each with its exception.
 type Batch<'py> = (Bound<'py, PyDict>, Vec<(usize, Py<PyAny>)>);
 
-/// Periods of the force from which on one run takes long: some tenths of a second.
+/// A run of more periods of the force takes long: some tenths of a second.
 const LONG: f64 = 2e4;
 #[pymethods]
 impl Core {
@@ -38,7 +38,7 @@ impl Core {
     #[new]
     #[pyo3(signature = (text, file=None))]
     fn new(text: &str, file: Option<String>) -> PyResult<Self> {
-        Ok(caught(|| Self::read(text, file))?)
+        Ok(catch_panic(|| Self::read(text, file))?)
     }
 
     /// The study with every default written out, as JSON.
@@ -101,7 +101,7 @@ impl Core {
         let mut row = [0.0; Parameter::VARIED.len()];
         let row = &mut row[..objective.variables().len()];
         self.design(x, row)?;
-        Ok(self.found(py, objective, row)?.ranked)
+        Ok(self.evaluate(py, objective, row)?.ranked)
     }
 
     /// Everything that an evaluation finds, by its name.
@@ -110,9 +110,9 @@ impl Core {
         let objective = self.objective()?;
         let mut row = vec![0.0; objective.variables().len()];
         self.design(x, &mut row)?;
-        let found = self.found(py, objective, &row)?;
+        let found = self.evaluate(py, objective, &row)?;
         let all = PyDict::new(py);
-        for (name, value) in column_names("largest").into_iter().zip(numbers_of(&found, self.knows)) {
+        for (name, value) in column_names("largest").into_iter().zip(numbers_of(&found, self.known)) {
             all.set_item(name, value)?;
         }
         all.set_item("runs", found.runs)?;
@@ -130,14 +130,14 @@ impl Core {
         let objective = Arc::clone(self.objective()?);
         let mut row = vec![0.0; objective.variables().len()];
         self.design(x, &mut row)?;
-        let by = move |goes_on: Proceed<'_>| {
-            let (found, by) = objective.gradient(&row, goes_on)?;
+        let by = move |proceed: Proceed<'_>| {
+            let (found, by) = objective.gradient(&row, proceed)?;
             Ok((found.ranked, by))
         };
         let (value, by) = if self.takes_long {
             on_pool(py, &*pool(None)?, move |monitor| by(&|| !monitor.is_stopped()))?
         } else {
-            py.detach(|| caught(|| by(&|| true)))?
+            py.detach(|| catch_panic(|| by(&|| true)))?
         };
         Ok((value, PyArray1::from_vec(py, by)))
     }
@@ -156,26 +156,26 @@ impl Core {
         if shape.len() != 2 || shape[1] != width {
             return Err(self.shape("X", &shape, &format!("(n, {width})"))?.into());
         }
-        let (goal, knows) = (Arc::clone(objective), self.knows);
+        let (goal, known) = (Arc::clone(objective), self.known);
         let (columns, failed) = on_pool(py, &*pool(threads)?, move |monitor| {
-            // Nobody asks for the rows of a batch that was stopped.
-            let goes_on = || !monitor.is_stopped();
+            // The rows of a stopped batch are never used.
+            let proceed = || !monitor.is_stopped();
             let row = |design: &[f64]| {
                 if monitor.is_stopped() {
                     return Ok([f64::NAN; COUNT]);
                 }
-                caught(|| {
+                catch_panic(|| {
                     let found = goal
                         .scene(design)
-                        .and_then(|scene| goal.evaluate_while(&scene, f64::INFINITY, &goes_on));
-                    found.map(|found| numbers_of(&found, knows)).map_err(Fault::from)
+                        .and_then(|scene| goal.evaluate_while(&scene, f64::INFINITY, &proceed));
+                    found.map(|found| numbers_of(&found, known)).map_err(Fault::from)
                 })
             };
             Ok(in_columns(&designs, width, row))
         })?;
         let names = column_names(self.quantity().0).map(str::to_owned);
         let columns = table(py, names.into_iter().zip(columns))?;
-        let failed = failed.into_iter().take(TOLD);
+        let failed = failed.into_iter().take(MAX_EXCEPTIONS);
         let failed = failed.map(|(i, fault)| (i, PyErr::from(*fault).into_value(py).into_any()));
         Ok((columns, failed.collect()))
     }
@@ -219,23 +219,23 @@ impl Core {
                 )))
             }
         };
-        let is_one = |term: &Objective| {
+        let is_single_run = |term: &Objective| {
             let at_once = term.omega.is_none() || term.response == Response::Steady;
             at_once && term.k1.is_none() && term.restitution.is_none() && term.ensemble.is_none()
         };
         let periods = study.window.window().to * study.scene.forcing.frequency.get() / TAU;
         let takes_long = periods > LONG && !study.objective().is_steady()
-            || !study.objective().terms().iter().all(|(_, term)| is_one(term));
+            || !study.objective().terms().iter().all(|(_, term)| is_single_run(term));
         let goal = study.goal();
         let limited = |measure| goal.limits.get(Limit::Of(measure)).is_some();
         // A stationary random motion has no largest stroke.
         let is_steady = goal.objective.is_steady() && !goal.objective.is_stationary();
-        let knows = Known {
+        let known = Known {
             quantity: study.quantity(),
             stroke: limited(Measure::Stroke) || is_steady,
             force: limited(Measure::ContactForce),
         };
-        Ok(Self { study, file, objective, takes_long, knows })
+        Ok(Self { study, file, objective, takes_long, known })
     }
 
     fn variables(&self) -> &[Parameter] {
@@ -270,8 +270,8 @@ impl Core {
         ))
     }
 
-    /// Evaluates a design: here, or on the pool if that may take long, so that Ctrl-C ends it.
-    fn found(
+    /// Evaluates a design: on this thread, or, if that may take long, on the pool, so that Ctrl-C ends it.
+    fn evaluate(
         &self,
         py: Python<'_>,
         objective: &Arc<DesignObjective>,
@@ -279,12 +279,12 @@ impl Core {
     ) -> PyResult<Evaluation> {
         if !self.takes_long {
             let here = || Ok(objective.evaluate(&objective.scene(design)?, f64::INFINITY)?);
-            return Ok(py.detach(|| caught(here))?);
+            return Ok(py.detach(|| catch_panic(here))?);
         }
         let (objective, design) = (Arc::clone(objective), design.to_vec());
         on_pool(py, &*pool(None)?, move |monitor| {
-            let goes_on = || !monitor.is_stopped();
-            Ok(objective.evaluate_while(&objective.scene(&design)?, f64::INFINITY, &goes_on)?)
+            let proceed = || !monitor.is_stopped();
+            Ok(objective.evaluate_while(&objective.scene(&design)?, f64::INFINITY, &proceed)?)
         })
     }
 

@@ -9,7 +9,7 @@ pub enum Scale {
     Log,
 }
 
-/// An axis of a quantity. Its constructors see to a range that can be drawn.
+/// An axis of a quantity. Its constructors always give a range that can be drawn.
 #[derive(Clone, Debug)]
 pub struct Axis {
     pub(crate) label: String,
@@ -30,7 +30,7 @@ impl Axis {
         Self::new(label, Scale::Log, range)
     }
 
-    /// An axis over a range. A range that is not finite becomes 0 to 1, and so does, on a logarithmic scale, one that is not above zero.
+    /// An axis over a range. A range that is not finite, or not positive on a logarithmic scale, becomes 0 to 1.
     pub fn new(label: impl Into<String>, scale: Scale, (from, to): (f64, f64)) -> Self {
         let label = label.into();
         if !(from.is_finite() && to.is_finite()) || (scale == Scale::Log && from.min(to) <= 0.0) {
@@ -55,7 +55,7 @@ impl Axis {
         Self::linear(label, (0.0, if top > 0.0 { 1.06 * top } else { 1.0 }))
     }
 
-    /// An axis of the scale that [`scale_for`] chooses: from 0, or about all values.
+    /// An axis whose scale [`scale_for`] chooses: linear from 0, or logarithmic around all values.
     pub fn fitting(label: impl Into<String>, values: &[f64]) -> Self {
         match scale_for(values) {
             Scale::Log => Self::around(label, Scale::Log, values.iter().copied()),
@@ -63,23 +63,23 @@ impl Axis {
         }
     }
 
-    /// An axis from the smallest to the largest of the finite `values` (on a logarithmic scale: of those above zero).
+    /// An axis from the smallest to the largest finite value (on a logarithmic scale, the smallest positive one).
     pub fn exact(label: impl Into<String>, scale: Scale, values: impl IntoIterator<Item = f64>) -> Self {
         Self::holding(label, scale, values, 0.0)
     }
 
-    /// As [`Self::exact`], extended by 8 % at both ends.
+    /// Like [`Self::exact`], extended by 8 % at both ends.
     pub fn around(label: impl Into<String>, scale: Scale, values: impl IntoIterator<Item = f64>) -> Self {
         Self::holding(label, scale, values, 0.08)
     }
 
-    /// An axis of things with names, each at its place; lines of a name are separated by `\n`.
+    /// A categorical axis: each name at its position. A `\n` in a name breaks it into lines.
     pub fn of_names(range: (f64, f64), names: Vec<(f64, String)>) -> Self {
         Self { names, ..Self::linear("", range) }
     }
 
-    /// With a second scale for the same quantity in another unit: a label, and by what values are multiplied. That of an abscissa stands
-    /// above the frame; an ordinate has none.
+    /// Adds a second scale, in another unit: its label, and the factor that converts values to it. It is drawn above the frame, for an
+    /// abscissa only.
     #[must_use]
     pub fn with_second(self, label: impl Into<String>, factor: f64) -> Self {
         let range = (factor * self.range.0, factor * self.range.1);
@@ -107,7 +107,7 @@ impl Axis {
     }
 
     /// The position of `value` on the axis, 0 at its beginning and 1 at its end; NaN where it has none.
-    pub(crate) fn share(&self, value: f64) -> f64 {
+    pub(crate) fn fraction(&self, value: f64) -> f64 {
         let (from, to) = self.range;
         match self.scale {
             Scale::Linear => (value - from) / (to - from),
@@ -140,11 +140,11 @@ mod tests {
 
     #[test]
     fn exact_share_is_even_on_the_scale() {
-        let share = |scale, value| Axis::new("", scale, (2.0, 200.0)).share(value);
-        assert!((share(Scale::Linear, 101.0) - 0.5).abs() < 1e-14);
-        assert!((share(Scale::Log, 20.0) - 0.5).abs() < 1e-14);
-        assert!(share(Scale::Log, 1.0) < 0.0 && share(Scale::Log, 300.0) > 1.0);
-        assert!(share(Scale::Log, 0.0).is_nan() && share(Scale::Log, -1.0).is_nan());
+        let fraction = |scale, value| Axis::new("", scale, (2.0, 200.0)).fraction(value);
+        assert!((fraction(Scale::Linear, 101.0) - 0.5).abs() < 1e-14);
+        assert!((fraction(Scale::Log, 20.0) - 0.5).abs() < 1e-14);
+        assert!(fraction(Scale::Log, 1.0) < 0.0 && fraction(Scale::Log, 300.0) > 1.0);
+        assert!(fraction(Scale::Log, 0.0).is_nan() && fraction(Scale::Log, -1.0).is_nan());
     }
 
     #[test]

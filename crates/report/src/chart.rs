@@ -56,7 +56,7 @@ pub struct Mark {
     pub colour: Colour,
     /// Its diameter, pt.
     pub size: f64,
-    /// Whether it has a rim in the colour of the paper, which sets it off from what is behind it.
+    /// Whether it has a rim in the paper's colour, which separates it from what is behind.
     pub rim: bool,
 }
 
@@ -67,7 +67,7 @@ impl Mark {
     }
 }
 
-/// A layer of a chart. What lies beyond the axes is cut off.
+/// A layer of a chart, clipped to the axes.
 #[derive(Clone, Debug)]
 #[expect(missing_docs, reason = "their names say what they are")]
 pub enum Layer {
@@ -76,12 +76,12 @@ pub enum Layer {
         points: Vec<(f64, f64)>,
         stroke: Stroke,
     },
-    /// A line that keeps the height of a point until the next one.
+    /// A step function: each value is held until the next point.
     Steps {
         points: Vec<(f64, f64)>,
         stroke: Stroke,
     },
-    /// Many dots of a diameter in pt, of which those that cover one another are drawn once.
+    /// Many dots of one diameter, pt. Dots that cover each other are drawn once.
     Dots {
         points: Vec<(f64, f64)>,
         colour: Colour,
@@ -99,14 +99,14 @@ pub enum Layer {
         colour: Colour,
         opacity: f64,
     },
-    /// A coloured cell for each value, between edges along both axes: the index of the first side varies fastest. Values that are not finite
-    /// are grey; `colours` says what the colours mean.
+    /// One coloured cell per value, between edges along both axes; the index along the first axis varies fastest. Non-finite values are
+    /// grey; `colours` is the colour scale.
     Map {
         edges: [Vec<f64>; 2],
         values: Vec<f64>,
         colours: Axis,
     },
-    /// A cell of its own colour for each of `colours`, between edges as in a [`Layer::Map`].
+    /// One cell per entry of `colours`, between edges as in a [`Layer::Map`].
     Cells {
         edges: [Vec<f64>; 2],
         colours: Vec<Colour>,
@@ -126,7 +126,7 @@ pub enum Layer {
         text: String,
         stand: Stand,
     },
-    /// A name on the right of the frame for a line that ends at a place. Names are moved apart, each with a thin line to its place.
+    /// A label right of the frame for a line that ends at a point. Labels are moved apart, each with a leader to its point.
     Name {
         at: (f64, f64),
         text: String,
@@ -141,14 +141,14 @@ impl Layer {
     }
 }
 
-/// How a text stands at its place.
+/// How a text is placed at its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stand {
-    /// About it, with a rim in the colour of the paper, so that lines behind do not cross it.
+    /// Centred, with a rim in the paper's colour, so that lines behind do not cross it.
     Over,
-    /// On its right, with a rim.
+    /// To the right of it, with a rim.
     Right,
-    /// About it and small, in a coloured cell.
+    /// Centred and small, in a coloured cell.
     Cell,
 }
 
@@ -212,8 +212,8 @@ const MARKS: [Mark; 3] = [
     Mark { rim: true, ..Mark::new(Shape::Cross, BLACK, 7.0) },
 ];
 
-/// The chart of `values` over the two `sides`, row by row: the index of the first side varies fastest. `quantity` is their label with
-/// its unit. Values that are not finite are grey. The legend belongs to it.
+/// The chart of `values` over the two `sides`, with its legend; the index along the first side varies fastest. `quantity` is their label
+/// with its unit. Non-finite values are grey.
 pub fn heat_map(
     sides: &[Nodes; 2],
     values: &[f64],
@@ -225,8 +225,8 @@ pub fn heat_map(
     map(sides, Layer::Map { edges, values: values.to_vec(), colours }, places)
 }
 
-/// As [`heat_map`], of things without an order: for each cell the number of its name, or none. The legend has `names`, those beyond the colours
-/// as one, and `none` if a cell has none.
+/// Like [`heat_map`], for categories: each cell has the index of its name, or none. The legend lists `names`, those beyond the colours as
+/// one entry, and `none` if some cell has none.
 pub fn category_map(
     sides: &[Nodes; 2],
     of: &[Option<usize>],
@@ -250,7 +250,7 @@ pub fn category_map(
     (chart, [legend, marked].concat())
 }
 
-/// A chart of cells over two sides, and the legend of the places that are marked in it.
+/// A chart of cells over two sides, and the legend of its marked places.
 fn map(sides: &[Nodes; 2], cells: Layer, places: &[Place]) -> (Chart, Vec<(Key, String)>) {
     let axis = |side: &Nodes| {
         let edges = edges(side);

@@ -27,19 +27,19 @@ pub const PAPER: Colour = "#FFFFFF";
 /// Where a map has no value.
 pub(crate) const NOTHING: &str = "#C8C8C8";
 
-/// What is drawn in another colour on a dark page. Blue and vermilion would be too dark there.
+/// Colours that are replaced on a dark page. Blue and vermilion would be too dark there.
 pub const DARK: [(Colour, &str); 5] =
     [(BLACK, "#E8EAEE"), (PAPER, "#14161A"), (BLUE, "#4AA8E0"), (VERMILION, "#FF8A3D"), (GREEN, "#2FC79B")];
 
-/// Colours of the cells of a map whose values have no order, at most as many as a reader tells apart; those beyond share [`OTHERS`]. Blue, orange,
-/// bluish green, reddish purple and yellow of the palette, and a dark brown: also those who see no red or no green tell them apart (a test). In small
-/// letters, so that [`style`] leaves them alone: a map keeps its colours on a dark page.
+/// Colours of a map of categories: as many as a reader can tell apart; all further categories share [`OTHERS`]. Blue, orange, bluish green,
+/// reddish purple and yellow of the palette, and a dark brown, which readers who see no red or no green also tell apart (tested). Lower
+/// case, so that [`style`] does not match them: a map keeps its colours on a dark page.
 pub const CATEGORIES: [Colour; 6] = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#f0e442", "#5a2d0c"];
-/// The cells of all other values of such a map.
+/// The colour of all further categories.
 pub const OTHERS: Colour = "#f2f2f2";
 
-/// The style sheet of a figure: other colours where the reader's pages are dark. It holds within elements of the class `figure` only, so
-/// that it may stand in an HTML page. Maps keep their colours.
+/// The style sheet of a figure: replaces colours in dark mode. It applies only within elements of the class `figure`, so it can be embedded
+/// in an HTML page. Maps keep their colours.
 pub(crate) fn style() -> String {
     let rule = |(light, dark): (Colour, &str)| {
         format!(".figure [fill=\"{light}\"]{{fill:{dark}}}.figure [stroke=\"{light}\"]{{stroke:{dark}}}")
@@ -62,12 +62,12 @@ pub const VIRIDIS: [[f64; 3]; 9] = [
     [253.0, 231.0, 37.0],
 ];
 
-/// The colour of a share from 0 (dark) to 1 (bright), in 256 steps; grey if it is not finite.
-pub(crate) fn viridis(share: f64) -> String {
-    if !share.is_finite() {
+/// The colour of a fraction from 0 (dark) to 1 (bright), in 256 steps; grey if it is not finite.
+pub(crate) fn viridis(fraction: f64) -> String {
+    if !fraction.is_finite() {
         return NOTHING.to_owned();
     }
-    let place = (255.0 * share.clamp(0.0, 1.0)).round() / 255.0 * (VIRIDIS.len() - 1) as f64;
+    let place = (255.0 * fraction.clamp(0.0, 1.0)).round() / 255.0 * (VIRIDIS.len() - 1) as f64;
     let i = (place as usize).min(VIRIDIS.len() - 2);
     let part = place - i as f64;
     let [r, g, b] =
@@ -96,8 +96,8 @@ mod tests {
         (light(a) / light(b)).max(light(b) / light(a))
     }
 
-    /// How far apart two colours are in CIELAB (1976) for readers of whose cones some are missing: matrices of G. M. Machado et al. (2009) at
-    /// severity 1, in linear sRGB.
+    /// The distance of two colours in CIELAB (1976) as seen by colour-blind readers: matrices of G. M. Machado et al. (2009) at severity 1,
+    /// in linear sRGB.
     fn apart(a: &str, b: &str, seen: [[f64; 3]; 3]) -> f64 {
         let lab = |colour: &str| {
             let linear = [1, 3, 5].map(|i| {

@@ -1,44 +1,45 @@
-//! Names beside lines instead of a legend: each stands where it touches no line and is nearest to its own, with a thin line to it.
+//! Direct labels: names beside lines instead of a legend. Each is placed where it touches no line, as near as possible to its own, with a
+//! leader.
 //!
-//! A reader then need not look from the legend to the line and back. The frame is a grid of cells of [`CELL`] pt, each with a bit for every line
-//! that passes it, so that a place is judged at once, however many points a line has.
+//! The frame is rasterised into cells of [`CELL`] pt, each with a bit for every line that passes through it, so that the cost of testing a
+//! position does not depend on the number of points of a line.
 
 use crate::chart::{Key, Layer, Stroke};
 use crate::layout::{LINE, Layout, SMALL};
 use crate::path::{Rect, clip};
 use crate::text::ems;
 
-/// The most lines that are named so.
-const MOST: usize = 6;
+/// Most lines that are labelled directly.
+const MAX_LINES: usize = 6;
 /// Side of a cell, pt.
 const CELL: f64 = 1.0;
-/// Places along a line at which a name is tried.
-const ALONG: usize = 96;
-/// Distances of a name from its line, pt.
-const AWAY: [f64; 7] = [3.0, 7.0, 13.0, 21.0, 31.0, 45.0, 65.0];
-/// Space about a name, pt.
-const SPACE: f64 = 2.0;
-/// What is no line with a name: marks, rules, texts.
-const OTHER: u32 = 1 << MOST;
-/// A name that has been placed.
-const NAME: u32 = OTHER << 1;
+/// Most points along a line at which a label is tried.
+const MAX_CANDIDATES: usize = 96;
+/// Candidate distances of a label from its line, pt.
+const OFFSETS: [f64; 7] = [3.0, 7.0, 13.0, 21.0, 31.0, 45.0, 65.0];
+/// Least distance of a label from the frame, pt.
+const PADDING: f64 = 2.0;
+/// Everything but the labelled lines: marks, rules, texts.
+const OBSTACLE_BIT: u32 = 1 << MAX_LINES;
+/// Labels already placed, with their leaders.
+const LABEL_BIT: u32 = OBSTACLE_BIT << 1;
 
-/// A name beside its line.
+/// A label beside its line.
 #[derive(Clone, Debug)]
-pub(crate) struct Direct {
-    /// Its lines.
+pub(crate) struct DirectLabel {
+    /// The lines of its text.
     pub text: Vec<String>,
     /// The rectangle of the text.
     pub rect: Rect,
-    /// From the line to the name.
+    /// From the line to the label.
     pub leader: [(f64, f64); 2],
     pub stroke: Stroke,
 }
 
-/// The names of all lines of a legend beside them, in the order of `keys`; none if one finds no place, or if there are no lines or too many.
-pub(crate) fn direct(layout: &Layout, keys: &[(Key, String)]) -> Option<Vec<Direct>> {
+/// Places a label beside every line of a legend, in the order of `keys`; none if one does not fit, or if there are no lines or too many.
+pub(crate) fn place_labels(layout: &Layout, keys: &[(Key, String)]) -> Option<Vec<DirectLabel>> {
     let named: Vec<(Stroke, &str)> = keys.iter().filter_map(line).collect();
-    if named.is_empty() || named.len() > MOST {
+    if named.is_empty() || named.len() > MAX_LINES {
         return None;
     }
     let mut grid = Grid::new(layout.frame);
@@ -49,11 +50,11 @@ pub(crate) fn direct(layout: &Layout, keys: &[(Key, String)]) -> Option<Vec<Dire
     // The lines with the least room first.
     let mut order: Vec<usize> = (0..named.len()).collect();
     order.sort_by_key(|&i| paths[i].len());
-    let mut all: Vec<Option<Direct>> = vec![None; named.len()];
+    let mut all: Vec<Option<DirectLabel>> = vec![None; named.len()];
     for i in order {
         let found = grid.place(&paths[i], i, named[i])?;
-        grid.fill(found.rect, NAME);
-        grid.segment(found.leader, NAME);
+        grid.fill(found.rect, LABEL_BIT);
+        grid.segment(found.leader, LABEL_BIT);
         all[i] = Some(found);
     }
     all.into_iter().collect()
@@ -67,7 +68,7 @@ pub(crate) fn line((key, text): &(Key, String)) -> Option<(Stroke, &str)> {
     }
 }
 
-/// Marks a layer in the grid, and collects the places of the lines with names; none if something covers the frame.
+/// Rasterises a layer into the grid and collects the points of labelled lines; none if the layer covers the frame.
 fn draw(
     grid: &mut Grid,
     paths: &mut [Vec<(f64, f64)>],
@@ -76,47 +77,47 @@ fn draw(
     layout: &Layout,
 ) -> Option<()> {
     let [left, top, right, bottom] = layout.frame;
-    let mut through = |points: &mut dyn Iterator<Item = (f64, f64)>, stroke: &Stroke| {
-        let own = named.iter().position(|(of, _)| same(of, stroke));
+    let mut draw_path = |points: &mut dyn Iterator<Item = (f64, f64)>, stroke: &Stroke| {
+        let index = named.iter().position(|(of, _)| same_style(of, stroke));
         let points: Vec<(f64, f64)> = points.collect();
         for ends in points.windows(2).filter_map(|pair| clip(layout.frame, pair[0], pair[1])) {
-            grid.segment(ends, own.map_or(OTHER, |own| 1 << own));
-            if let Some(own) = own {
-                paths[own].extend(along(ends));
+            grid.segment(ends, index.map_or(OBSTACLE_BIT, |index| 1 << index));
+            if let Some(index) = index {
+                paths[index].extend(along(ends));
             }
         }
     };
     match layer {
         Layer::Line { points, stroke } => {
-            through(&mut points.iter().map(|&point| layout.at(point)), stroke);
+            draw_path(&mut points.iter().map(|&point| layout.at(point)), stroke);
         }
         Layer::Steps { points, stroke } => {
             let corner = |pair: &[(f64, f64)]| [(pair[1].0, pair[0].1), pair[1]];
             let all = points.first().copied().into_iter().chain(points.windows(2).flat_map(corner));
-            through(&mut all.map(|point| layout.at(point)), stroke);
+            draw_path(&mut all.map(|point| layout.at(point)), stroke);
         }
         Layer::Upright { x, stroke } => {
             let at = layout.at((*x, f64::NAN)).0;
-            through(&mut [(at, top), (at, bottom)].into_iter(), stroke);
+            draw_path(&mut [(at, top), (at, bottom)].into_iter(), stroke);
         }
         Layer::Level { y, stroke } => {
             let at = layout.at((f64::NAN, *y)).1;
-            through(&mut [(left, at), (right, at)].into_iter(), stroke);
+            draw_path(&mut [(left, at), (right, at)].into_iter(), stroke);
         }
         Layer::Marks { points, mark } => {
             let half = 0.5 * mark.size + 1.0;
             for (x, y) in points.iter().map(|&point| layout.at(point)) {
-                grid.fill([x - half, y - half, x + half, y + half], OTHER);
+                grid.fill([x - half, y - half, x + half, y + half], OBSTACLE_BIT);
             }
         }
         Layer::Dots { points, size, .. } => {
             for (x, y) in points.iter().map(|&point| layout.at(point)) {
-                grid.fill([x - size, y - size, x + size, y + size], OTHER);
+                grid.fill([x - size, y - size, x + size, y + size], OBSTACLE_BIT);
             }
         }
         Layer::Text { at, text, .. } => {
             let ((x, y), half) = (layout.at(*at), 0.5 * SMALL * ems(text));
-            grid.fill([x - half, y - SMALL, x + half, y + SMALL], OTHER);
+            grid.fill([x - half, y - SMALL, x + half, y + SMALL], OBSTACLE_BIT);
         }
         Layer::Band { .. } => {}
         Layer::Map { .. } | Layer::Cells { .. } | Layer::Name { .. } => return None,
@@ -124,7 +125,7 @@ fn draw(
     Some(())
 }
 
-fn same(a: &Stroke, b: &Stroke) -> bool {
+fn same_style(a: &Stroke, b: &Stroke) -> bool {
     a.colour == b.colour && a.dash == b.dash && a.width == b.width
 }
 
@@ -132,13 +133,13 @@ fn same(a: &Stroke, b: &Stroke) -> bool {
 fn along([from, to]: [(f64, f64); 2]) -> impl Iterator<Item = (f64, f64)> {
     let steps = (2.0 * (to.0 - from.0).hypot(to.1 - from.1) / CELL).ceil().max(1.0);
     let at = move |i: usize| {
-        let share = i as f64 / steps;
-        (from.0 + share * (to.0 - from.0), from.1 + share * (to.1 - from.1))
+        let fraction = i as f64 / steps;
+        (from.0 + fraction * (to.0 - from.0), from.1 + fraction * (to.1 - from.1))
     };
     (0..=steps as usize).map(at)
 }
 
-/// What passes each cell of a frame.
+/// The raster of a frame: one set of bits per cell.
 struct Grid {
     frame: Rect,
     columns: usize,
@@ -184,66 +185,75 @@ impl Grid {
         }
     }
 
-    /// Whether a segment meets none of the bits but about its beginning.
+    /// Whether a segment crosses none of the bits, apart from the surroundings of its first point.
     fn is_free(&self, ends: [(f64, f64); 2], bits: u32) -> bool {
         let beginning = |(x, y): (f64, f64)| (x - ends[0].0).hypot(y - ends[0].1) < 1.5 * CELL;
         let is_free = |point| self.cell(point).is_none_or(|cell| self.cells[cell] & bits == 0);
         along(ends).filter(|point| !beginning(*point)).all(is_free)
     }
 
-    /// The best place of the name of a line: near to it, far from the others, rather on the right.
-    fn place(&self, path: &[(f64, f64)], own: usize, (stroke, text): (Stroke, &str)) -> Option<Direct> {
-        let counts = [Counts::new(self, !0), Counts::new(self, !(1 << own))];
-        let found = shapes(text).into_iter().map(|lines| self.place_lines(path, own, stroke, lines, &counts));
+    /// The best position of a line's label: near its line, far from others, preferably on the right.
+    fn place(
+        &self,
+        path: &[(f64, f64)],
+        index: usize,
+        (stroke, text): (Stroke, &str),
+    ) -> Option<DirectLabel> {
+        let counts = [Counts::new(self, !0), Counts::new(self, !(1 << index))];
+        let found =
+            line_breaks(text).into_iter().map(|lines| self.place_lines(path, index, stroke, lines, &counts));
         found.flatten().min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, found)| found)
     }
 
-    /// As [`Self::place`], of a name that is broken into lines, with what it costs. `counts` are those of all bits, and of all but its own.
+    /// Like [`Self::place`] for a text broken into lines; also returns the cost. `counts` are for all bits, and for all but those of its
+    /// own line.
     fn place_lines(
         &self,
         path: &[(f64, f64)],
-        own: usize,
+        index: usize,
         stroke: Stroke,
         text: Vec<String>,
         [all, foreign]: &[Counts<'_>; 2],
-    ) -> Option<(f64, Direct)> {
+    ) -> Option<(f64, DirectLabel)> {
         let width = text.iter().map(|line| SMALL * ems(line)).fold(0.0, f64::max);
         let height = SMALL + LINE * SMALL * (text.len() - 1) as f64;
-        let (half, others) = ((0.5 * width, 0.5 * height), !(1 << own));
+        let (half, other_bits) = ((0.5 * width, 0.5 * height), !(1 << index));
         let [left, top, right, bottom] = self.frame;
-        let mut best: Option<(f64, Direct)> = None;
-        for &(x, y) in path.iter().step_by(path.len().div_ceil(ALONG).max(1)) {
-            // Where its line lies on another, a name would stand for both.
-            if foreign.within(around([x, y, x, y], 1.0)) > 0 {
+        let mut best: Option<(f64, DirectLabel)> = None;
+        for &(x, y) in path.iter().step_by(path.len().div_ceil(MAX_CANDIDATES).max(1)) {
+            // Where lines coincide, a label would be ambiguous.
+            if foreign.within(expanded([x, y, x, y], 1.0)) > 0 {
                 continue;
             }
-            let across = x.clamp(left + SPACE + half.0, (right - SPACE - half.0).max(left + SPACE + half.0));
-            let above = |away: f64, sign: f64| (across, y + sign * (away + half.1));
-            let beside = |away: f64, sign: f64| (x + sign * (away + half.0), y);
-            let oblique = |away: f64, right: f64, down: f64| {
-                (x + right * (0.7 * away + half.0), y + down * (0.7 * away + half.1))
+            let across =
+                x.clamp(left + PADDING + half.0, (right - PADDING - half.0).max(left + PADDING + half.0));
+            let above = |offset: f64, sign: f64| (across, y + sign * (offset + half.1));
+            let beside = |offset: f64, sign: f64| (x + sign * (offset + half.0), y);
+            let oblique = |offset: f64, right: f64, down: f64| {
+                (x + right * (0.7 * offset + half.0), y + down * (0.7 * offset + half.1))
             };
-            let sides = |away| {
-                let straight = [above(away, -1.0), above(away, 1.0), beside(away, 1.0), beside(away, -1.0)];
+            let sides = |offset| {
+                let straight =
+                    [above(offset, -1.0), above(offset, 1.0), beside(offset, 1.0), beside(offset, -1.0)];
                 let corners = [(1.0, -1.0), (1.0, 1.0), (-1.0, -1.0), (-1.0, 1.0)];
-                straight.into_iter().chain(corners.map(|(right, down)| oblique(away, right, down)))
+                straight.into_iter().chain(corners.map(|(right, down)| oblique(offset, right, down)))
             };
-            for (away, (cx, cy)) in
-                AWAY.into_iter().flat_map(|away| sides(away).map(move |middle| (away, middle)))
+            for (offset, (cx, cy)) in
+                OFFSETS.into_iter().flat_map(|offset| sides(offset).map(move |middle| (offset, middle)))
             {
                 let rect = [cx - half.0, cy - half.1, cx + half.0, cy + half.1];
-                let fits = rect[0] >= left + SPACE && rect[2] <= right - SPACE;
-                let fits = fits && rect[1] >= top + SPACE && rect[3] <= bottom - SPACE;
+                let fits = rect[0] >= left + PADDING && rect[2] <= right - PADDING;
+                let fits = fits && rect[1] >= top + PADDING && rect[3] <= bottom - PADDING;
                 let leader = [(x, y), (x.clamp(rect[0], rect[2]), y.clamp(rect[1], rect[3]))];
-                if !fits || all.within(around(rect, 1.0)) > 0 || !self.is_free(leader, NAME) {
+                if !fits || all.within(expanded(rect, 1.0)) > 0 || !self.is_free(leader, LABEL_BIT) {
                     continue;
                 }
-                let crosses = f64::from(u8::from(!self.is_free(leader, others)));
-                let crowded = |by: f64| f64::from(u8::from(foreign.within(around(rect, by)) > 0));
+                let crosses = f64::from(u8::from(!self.is_free(leader, other_bits)));
+                let crowded = |by: f64| f64::from(u8::from(foreign.within(expanded(rect, by)) > 0));
                 let crowded = 8.0 * crowded(4.0) + 4.0 * crowded(8.0);
-                let cost = away + 20.0 * crosses + crowded + 6.0 * (right - x) / (right - left);
+                let cost = offset + 20.0 * crosses + crowded + 6.0 * (right - x) / (right - left);
                 if best.as_ref().is_none_or(|(least, _)| cost < *least) {
-                    best = Some((cost, Direct { text: text.clone(), rect, leader, stroke }));
+                    best = Some((cost, DirectLabel { text: text.clone(), rect, leader, stroke }));
                 }
             }
         }
@@ -251,43 +261,42 @@ impl Grid {
     }
 }
 
-/// How many cells have any of some bits: for each corner of the grid, those above it and on its left, so that those in a rectangle are known at
-/// once from its four corners.
+/// A summed-area table of the cells that have any of some bits: the count in a rectangle follows from its four corners.
 struct Counts<'a> {
     grid: &'a Grid,
-    before: Vec<u32>,
+    sums: Vec<u32>,
 }
 
 impl<'a> Counts<'a> {
     fn new(grid: &'a Grid, bits: u32) -> Self {
         let width = grid.columns + 1;
-        let mut before = vec![0; width];
+        let mut sums = vec![0; width];
         for row in grid.cells.chunks_exact(grid.columns) {
             let mut on_the_left = 0;
-            before.push(0);
+            sums.push(0);
             for cell in row {
                 on_the_left += u32::from(cell & bits != 0);
-                before.push(on_the_left + before[before.len() - width]);
+                sums.push(on_the_left + sums[sums.len() - width]);
             }
         }
-        Self { grid, before }
+        Self { grid, sums }
     }
 
-    /// How many of them are in a rectangle, pt.
+    /// The number of such cells in a rectangle, pt.
     fn within(&self, rect: Rect) -> u32 {
         let [columns, rows] = self.grid.range(rect);
         if columns.is_empty() || rows.is_empty() {
             return 0;
         }
-        let before = |column: usize, row: usize| self.before[row * (self.grid.columns + 1) + column];
+        let sums = |column: usize, row: usize| self.sums[row * (self.grid.columns + 1) + column];
         let [left, right] =
-            [columns.start, columns.end].map(|column| (before(column, rows.start), before(column, rows.end)));
+            [columns.start, columns.end].map(|column| (sums(column, rows.start), sums(column, rows.end)));
         right.1 + left.0 - right.0 - left.1
     }
 }
 
-/// A name on one line, and on two if it has several words.
-fn shapes(text: &str) -> Vec<Vec<String>> {
+/// A text on one line, and, if it has several words, broken into the two lines that are narrowest.
+fn line_breaks(text: &str) -> Vec<Vec<String>> {
     let words: Vec<&str> = text.split_whitespace().collect();
     let breaks = 1..words.len();
     let two = breaks.map(|at| [words[..at].join(" "), words[at..].join(" ")].to_vec());
@@ -296,7 +305,7 @@ fn shapes(text: &str) -> Vec<Vec<String>> {
     std::iter::once(vec![text.to_owned()]).chain(narrow).collect()
 }
 
-fn around([left, top, right, bottom]: Rect, by: f64) -> Rect {
+fn expanded([left, top, right, bottom]: Rect, by: f64) -> Rect {
     [left - by, top - by, right + by, bottom + by]
 }
 
@@ -335,7 +344,7 @@ mod tests {
         for dampings in [&[0.05, 0.1, 0.2][..], &[0.05], &[0.05, 0.07, 0.1, 0.15]] {
             let (chart, legend) = curves(dampings);
             let laid = layout(&chart, [3.0, 3.0, 238.0, 173.0], true, Margins::default());
-            let names = direct(&laid, &legend).expect("room for all");
+            let names = place_labels(&laid, &legend).expect("room for all");
             assert_eq!(names.len(), dampings.len());
             for (i, name) in names.iter().enumerate() {
                 assert_eq!(name.text.join(" "), legend[i].1);
@@ -351,9 +360,9 @@ mod tests {
                     let (x, y) = name.leader[0];
                     let off = places.windows(2).map(|pair| {
                         let (dx, dy) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
-                        let share = ((x - pair[0].0) * dx + (y - pair[0].1) * dy) / (dx * dx + dy * dy);
-                        let share = share.clamp(0.0, 1.0);
-                        (x - pair[0].0 - share * dx).hypot(y - pair[0].1 - share * dy)
+                        let fraction = ((x - pair[0].0) * dx + (y - pair[0].1) * dy) / (dx * dx + dy * dy);
+                        let fraction = fraction.clamp(0.0, 1.0);
+                        (x - pair[0].0 - fraction * dx).hypot(y - pair[0].1 - fraction * dy)
                     });
                     let off = off.fold(f64::INFINITY, f64::min);
                     assert!(if k == i { off < 0.1 } else { off > 0.7 }, "{:?} to line {k}: {off}", name.text);
@@ -367,7 +376,7 @@ mod tests {
         let cell = [3.0, 3.0, 238.0, 173.0];
         let found = |dampings: &[f64]| {
             let (chart, legend) = curves(dampings);
-            direct(&layout(&chart, cell, true, Margins::default()), &legend).map(|names| names.len())
+            place_labels(&layout(&chart, cell, true, Margins::default()), &legend).map(|names| names.len())
         };
         assert_eq!(found(&[0.1, 0.1]), None);
         assert_eq!(found(&[0.05, 0.06, 0.08, 0.1, 0.15, 0.2, 0.3]), None);

@@ -12,11 +12,11 @@ use serde::{Deserialize, Serialize};
 pub enum Verdict {
     /// It holds.
     Holds,
-    /// It holds in part, or in a sense that is not stated.
+    /// It holds in part, or in a sense that it does not state.
     Partly,
     /// It does not hold.
     Fails,
-    /// Practically equal cases decide it differently.
+    /// Practically equal cases disagree.
     Undecided,
 }
 
@@ -62,11 +62,11 @@ impl Verdict {
 /// A statement with a verdict.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Statement {
-    /// Its words: those of a paper, or nearly.
+    /// Its words, from a paper, verbatim or nearly so.
     pub paper: String,
     /// The criterion for the verdict and its reason: where the words give no number, this says what is measured.
     pub rule: String,
-    /// Whether it is our conjecture about what is left open, not a statement of somebody else.
+    /// Whether it is our own conjecture on an open question, not a statement of the paper.
     #[serde(default)]
     pub conjecture: bool,
     /// The verdict.
@@ -75,7 +75,7 @@ pub struct Statement {
     pub found: String,
 }
 
-/// A figure with its caption that stands in a file of its own, too.
+/// A figure with its caption, which is also written to a file of its own.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Figure {
     /// The name of its file.
@@ -103,13 +103,13 @@ pub enum Block {
     Table(String, Vec<String>, Vec<Vec<String>>),
     /// A figure, which is a file of the page.
     Figure(Figure),
-    /// A figure with a link to its file, which somebody else writes.
+    /// A figure with a link to its file, which is written elsewhere.
     Linked(Figure),
     /// Links to files beside the page.
     Files(Vec<String>),
-    /// Elements of a page as HTML alone, which Markdown leaves out.
+    /// HTML elements; Markdown omits them.
     Elements(Markup),
-    /// Pieces below their subject that a page shows when they are asked for; none is a [`Self::Figure`].
+    /// A collapsed section: its subject and its blocks, none of them a [`Self::Figure`].
     Folded(String, Vec<Block>),
 }
 
@@ -120,17 +120,17 @@ pub struct Document {
     pub title: String,
     /// The command that made it.
     pub command: &'static str,
-    /// What stands before the first section.
+    /// The blocks before the first section.
     pub opening: Vec<Block>,
     /// The sections, in their order.
     pub sections: Vec<Section>,
 }
 
-/// The target of links to a section, its heading, its contents.
+/// A section: link target, heading, contents.
 pub type Section = (&'static str, &'static str, Vec<Block>);
 
 impl Document {
-    /// Its files, each with its name: both forms and all figures.
+    /// The names and texts of its files: both forms and all figures.
     pub fn files(&self) -> Vec<(&str, String)> {
         let blocks = self.opening.iter().chain(self.sections.iter().flat_map(|(.., blocks)| blocks));
         let pages = [("README.md", self.markdown()), ("report.html", self.html())];

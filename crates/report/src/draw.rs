@@ -1,8 +1,8 @@
-//! A chart that is laid out, as SVG.
+//! Draws a chart that has been laid out, as SVG.
 
 use crate::chart::{Dash, Layer, Mark, Shape, Stand, Stroke};
 use crate::colour::{BLACK, Colour, GREY, PAPER, viridis};
-use crate::direct::Direct;
+use crate::direct::DirectLabel;
 use crate::layout::{LEADER, LINE, Layout, SMALL, TICK, TINY};
 use crate::path::{Rect, polyline, rectangle, shape};
 use crate::svg::{Anchor, Font, Svg, units};
@@ -20,13 +20,13 @@ const BAR: i32 = 64;
 
 /// Draws a chart.
 pub(crate) fn chart(svg: &mut Svg, layout: &Layout) {
-    let over = |layer: &&Layer| matches!(layer, Layer::Text { .. });
-    for layer in layout.chart.layers.iter().filter(|layer| !over(layer)) {
+    let is_text = |layer: &&Layer| matches!(layer, Layer::Text { .. });
+    for layer in layout.chart.layers.iter().filter(|layer| !is_text(layer)) {
         draw_layer(svg, layer, layout);
     }
     draw_frame(svg, layout);
     names(svg, layout);
-    for layer in layout.chart.layers.iter().filter(over) {
+    for layer in layout.chart.layers.iter().filter(is_text) {
         draw_layer(svg, layer, layout);
     }
     for label in &layout.labels {
@@ -50,7 +50,7 @@ pub(crate) fn dashes(dash: Dash) -> &'static str {
     }
 }
 
-/// Draws marks of one look at places, pt.
+/// Draws equal marks at points, pt.
 pub(crate) fn marks(svg: &mut Svg, places: &[(f64, f64)], mark: Mark) {
     let Mark { shape: kind, colour, size, rim } = mark;
     let (_, filled) = shape(kind, (0.0, 0.0), size);
@@ -95,7 +95,7 @@ fn draw_layer(svg: &mut Svg, layer: &Layer, layout: &Layout) {
             marks(svg, &places, *mark);
         }
         Layer::Band { x, y, colour, opacity } => {
-            // What has no place on a logarithmic axis lies before its beginning.
+            // A value without a position on a logarithmic axis is placed before its beginning.
             let across = |x: f64| layout.at((x, f64::NAN)).0.max(left).min(right);
             let up = |y: f64| layout.at((f64::NAN, y)).1.min(bottom).max(top);
             let rect = [across(x.0), up(y.1), across(x.1), up(y.0)];
@@ -104,7 +104,7 @@ fn draw_layer(svg: &mut Svg, layer: &Layer, layout: &Layout) {
             }
         }
         Layer::Map { edges, values, colours } => {
-            let cells = values.iter().map(|&value| viridis(colours.share(value)));
+            let cells = values.iter().map(|&value| viridis(colours.fraction(value)));
             for (colour, path) in map(edges, cells, layout) {
                 svg.fill(&path, &colour, CRISP);
             }
@@ -140,7 +140,7 @@ pub(crate) fn opaque(opacity: f64) -> String {
     if opacity < 1.0 { format!(" fill-opacity=\"{opacity}\"") } else { String::new() }
 }
 
-/// Dots at places, pt: one at most for each rectangle of 0.2 by 0.5 pt.
+/// Dots at points, pt: at most one per rectangle of 0.2 by 0.5 pt.
 fn dots(places: impl Iterator<Item = (f64, f64)>) -> String {
     let cells: BTreeSet<(i64, i64)> =
         places.map(|(x, y)| ((5.0 * x).round() as i64, (2.0 * y).round() as i64)).collect();
@@ -157,7 +157,7 @@ fn dots(places: impl Iterator<Item = (f64, f64)>) -> String {
     path
 }
 
-/// The cells of a map, those of one colour together.
+/// Draws the cells of a map, grouped by colour.
 fn map(
     edges: &[Vec<f64>; 2],
     colours: impl Iterator<Item = String>,
@@ -196,7 +196,7 @@ fn draw_frame(svg: &mut Svg, layout: &Layout) {
     }
     if let Some(axis) = &layout.chart.x.second {
         for (value, _) in &layout.second {
-            let at = units(layout.frame[0] + (layout.frame[2] - layout.frame[0]) * axis.share(*value));
+            let at = units(layout.frame[0] + (layout.frame[2] - layout.frame[0]) * axis.fraction(*value));
             let _ = write!(path, "M{at} {top}v{}", lengths[0]);
         }
     }
@@ -214,7 +214,7 @@ fn draw_frame(svg: &mut Svg, layout: &Layout) {
         }
         path += &rectangle(bar.rect);
         for (value, _) in &bar.ticks {
-            let at = units(bar.rect[3] - (bar.rect[3] - bar.rect[1]) * bar.colours.share(*value));
+            let at = units(bar.rect[3] - (bar.rect[3] - bar.rect[1]) * bar.colours.fraction(*value));
             let _ = write!(path, "M{} {at}h{}", units(to), lengths[0]);
         }
     }
@@ -222,7 +222,7 @@ fn draw_frame(svg: &mut Svg, layout: &Layout) {
     svg.line(&path, BLACK, FRAME, "");
 }
 
-/// Names beside the frame in the order of their places, moved apart.
+/// Draws labels beside the frame in the order of their points, moved apart.
 fn names(svg: &mut Svg, layout: &Layout) {
     let [left, top, right, bottom] = layout.frame;
     let mut all: Vec<((f64, f64), &str, Option<Mark>)> = Vec::new();
@@ -234,9 +234,9 @@ fn names(svg: &mut Svg, layout: &Layout) {
     }
     all.sort_by(|a, b| a.0.1.total_cmp(&b.0.1));
     let wanted: Vec<f64> = all.iter().map(|(at, ..)| at.1).collect();
-    for (((x, y), text, mark), place) in all.iter().zip(apart(&wanted, 1.2 * TINY, [top, bottom])) {
+    for (((x, y), text, mark), place) in all.iter().zip(spread_out(&wanted, 1.2 * TINY, [top, bottom])) {
         let from = right + LEADER - 8.0;
-        let path = polyline([(*x, *y), (from, place)].into_iter(), everywhere());
+        let path = polyline([(*x, *y), (from, place)].into_iter(), unbounded());
         svg.line(&path, GREY, 0.3, "");
         if let Some(mark) = mark {
             marks(svg, &[(from + 3.0, place)], *mark);
@@ -245,10 +245,10 @@ fn names(svg: &mut Svg, layout: &Layout) {
     }
 }
 
-/// Names beside their lines, each with a thin line to its own.
-pub(crate) fn directs(svg: &mut Svg, names: &[Direct]) {
-    for Direct { text, rect, leader, stroke } in names {
-        svg.line(&polyline(leader.iter().copied(), everywhere()), stroke.colour, 0.5, "");
+/// Draws labels beside their lines, each with a leader.
+pub(crate) fn direct_labels(svg: &mut Svg, names: &[DirectLabel]) {
+    for DirectLabel { text, rect, leader, stroke } in names {
+        svg.line(&polyline(leader.iter().copied(), unbounded()), stroke.colour, 0.5, "");
         marks(svg, &leader[..1], Mark::new(Shape::Disc, stroke.colour, 2.6));
         let font = Font { halo: true, ..Font::new(SMALL, Anchor::Middle) };
         for (i, line) in text.iter().enumerate() {
@@ -258,12 +258,13 @@ pub(crate) fn directs(svg: &mut Svg, names: &[Direct]) {
     }
 }
 
-const fn everywhere() -> Rect {
+const fn unbounded() -> Rect {
     [-1e6, -1e6, 1e6, 1e6]
 }
 
-/// Ascending places as near to those wanted as they can be `step` apart, between two ends if there is room.
-fn apart(wanted: &[f64], step: f64, [top, bottom]: [f64; 2]) -> Vec<f64> {
+/// Positions at least `step` apart that stay as close as possible to the wanted ones (ascending), within the
+/// two ends if there is room.
+fn spread_out(wanted: &[f64], step: f64, [top, bottom]: [f64; 2]) -> Vec<f64> {
     let mut places = wanted.to_vec();
     for i in 1..places.len() {
         places[i] = places[i].max(places[i - 1] + step);
@@ -288,7 +289,7 @@ pub(crate) fn area(svg: &mut Svg, rect: Rect, colour: Colour, opacity: f64) {
 
 /// A short line in a legend.
 pub(crate) fn sample(svg: &mut Svg, from: (f64, f64), length: f64, stroke: Stroke) {
-    line(svg, &polyline([from, (from.0 + length, from.1)].into_iter(), everywhere()), &stroke);
+    line(svg, &polyline([from, (from.0 + length, from.1)].into_iter(), unbounded()), &stroke);
 }
 
 #[cfg(test)]
@@ -297,11 +298,11 @@ mod tests {
 
     #[test]
     fn contract_names_are_moved_apart_and_stay_between_the_ends() {
-        let found = apart(&[10.0, 10.0, 10.0, 49.0, 49.0], 8.0, [0.0, 50.0]);
+        let found = spread_out(&[10.0, 10.0, 10.0, 49.0, 49.0], 8.0, [0.0, 50.0]);
         assert_eq!(found, [10.0, 18.0, 26.0, 42.0, 50.0]);
-        assert_eq!(apart(&[5.0, 30.0], 8.0, [0.0, 50.0]), [5.0, 30.0]);
-        // Without room they go on below.
-        assert_eq!(apart(&[5.0; 4], 8.0, [0.0, 16.0]), [0.0, 8.0, 16.0, 24.0]);
+        assert_eq!(spread_out(&[5.0, 30.0], 8.0, [0.0, 50.0]), [5.0, 30.0]);
+        // Without room they extend beyond the lower end.
+        assert_eq!(spread_out(&[5.0; 4], 8.0, [0.0, 16.0]), [0.0, 8.0, 16.0, 24.0]);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use crate::Drawing;
 use maud::{Markup, PreEscaped, html};
 
-/// What all pages of Retune look like: light and dark, wide, narrow and in print.
+/// The style of all pages: light and dark, wide, narrow and in print.
 const STYLE: &str = include_str!("page.css");
 
 /// The head of a page: its title, and the style of all pages.
@@ -36,18 +36,18 @@ pub struct Table {
 }
 
 impl Table {
-    /// A table without rows; its headings as they stand in the head of a Markdown table.
+    /// A table without rows; headings as in the first line of a Markdown table.
     pub fn new(caption: impl Into<String>, head: &str) -> Self {
         let head = head.split(" | ").map(str::to_owned).collect();
         Self { caption: caption.into(), head, rows: Vec::new(), wraps: false }
     }
 
-    /// The same for cells with words, which break into lines.
+    /// A table whose cells hold words and break into lines.
     pub fn wrapping(caption: impl Into<String>, head: &str) -> Self {
         Self { wraps: true, ..Self::new(caption, head) }
     }
 
-    /// Adds a row of texts. Long ones break into lines in any table, in a column that stays wide enough to be read.
+    /// Adds a row of texts. Long ones break into lines in any table, in a column that stays readable.
     pub fn row(&mut self, cells: impl IntoIterator<Item = impl ToString>) {
         let wraps = self.wraps;
         let cell = |text: String| {
@@ -57,7 +57,7 @@ impl Table {
         self.rows.push(cells.into_iter().map(|text| cell(text.to_string())).collect());
     }
 
-    /// Its HTML: it scrolls in its own box where it is wider than the page.
+    /// Its HTML; a table wider than the page scrolls in its own box.
     pub fn markup(&self) -> Markup {
         html! {
             div.scroll tabindex="0" role="group" aria-label=(self.caption) {
@@ -95,7 +95,7 @@ pub fn link(name: &str) -> Markup {
     html! { a href=(name) { (name) } }
 }
 
-/// Words as HTML: what stands in backticks, as in Markdown, is code.
+/// Text as HTML, with backticks for code as in Markdown.
 pub fn with_code(words: &str) -> Markup {
     html! {
         @for (number, part) in words.split('`').enumerate() {

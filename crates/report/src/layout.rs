@@ -1,4 +1,4 @@
-//! The places of a chart's parts: margins follow from the widths of the labels, so no label meets another.
+//! Layout of a chart: margins follow from the widths of the labels, so that no two labels overlap.
 
 use crate::axis::Axis;
 use crate::chart::{Chart, Layer};
@@ -20,7 +20,7 @@ pub(crate) const TICK: f64 = 3.0;
 const GAP: f64 = 4.0;
 /// Width of a colour bar, and its distance from the frame, pt.
 const BAR: [f64; 2] = [9.0, 7.0];
-/// Length of the line from the frame to a name, with the mark of the name, pt.
+/// Length of the leader from the frame to a name, including the name's mark, pt.
 pub(crate) const LEADER: f64 = 15.0;
 
 /// The left, right, upper and lower margin of a frame in its cell, pt.
@@ -33,18 +33,18 @@ pub(crate) struct Margins {
 }
 
 impl Margins {
-    /// Wide enough for both.
+    /// Raises the left and right margins to at least those of `other`.
     pub fn with(self, other: Self) -> Self {
         Self { left: self.left.max(other.left), right: self.right.max(other.right), ..self }
     }
 }
 
-/// A line of text and its place; its middle stands there, or its right end, or its left end.
+/// A line of text and its anchor point.
 #[derive(Clone, Debug)]
 pub(crate) struct Label {
     pub text: String,
     pub at: (f64, f64),
-    /// -1 for text to the left of its place, 1 for text to the right, 0 for text about it.
+    /// -1 for text left of its point, 1 for text right of it, 0 for centred text.
     pub side: i8,
     pub turned: bool,
     pub size: f64,
@@ -55,7 +55,7 @@ impl Label {
         Self { text: text.into(), at, side, turned: false, size: SMALL }
     }
 
-    /// The rectangle that the text fills at most.
+    /// A rectangle that encloses the text.
     #[cfg(test)]
     pub fn rect(&self) -> Rect {
         let (width, height) = (self.size * ems(&self.text), self.size);
@@ -79,13 +79,13 @@ pub(crate) struct Bar<'a> {
     pub ticks: Vec<Tick>,
 }
 
-/// A chart with its places.
+/// A chart with its layout.
 pub(crate) struct Layout<'a> {
     pub chart: &'a Chart,
     /// The frame.
     pub frame: Rect,
     pub margins: Margins,
-    /// Ticks of abscissa and ordinate, with a label and without.
+    /// Labelled and unlabelled ticks of abscissa and ordinate.
     pub ticks: [Vec<Tick>; 2],
     pub minor: [Vec<f64>; 2],
     /// Ticks of the second scale of the abscissa, in its own unit.
@@ -98,25 +98,25 @@ impl Layout<'_> {
     /// The place of a point, pt.
     pub fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
         let [left, top, right, bottom] = self.frame;
-        (left + (right - left) * self.chart.x.share(x), bottom - (bottom - top) * self.chart.y.share(y))
+        (left + (right - left) * self.chart.x.fraction(x), bottom - (bottom - top) * self.chart.y.fraction(y))
     }
 }
 
-/// Whether numbers have room side by side on `length`.
-fn fit_across(axis: &Axis, length: f64) -> impl Fn(&[Tick], f64) -> bool + '_ {
+/// Whether tick labels fit side by side on `length`.
+fn fits_horizontally(axis: &Axis, length: f64) -> impl Fn(&[Tick], f64) -> bool + '_ {
     move |ticks, space| {
         let ends = |(value, text): &Tick| {
-            let (middle, half) = (length * axis.share(*value), 0.5 * SMALL * ems(text));
+            let (middle, half) = (length * axis.fraction(*value), 0.5 * SMALL * ems(text));
             (middle - half, middle + half)
         };
         ticks.windows(2).all(|pair| ends(&pair[1]).0 - ends(&pair[0]).1 >= space * SMALL)
     }
 }
 
-/// Whether numbers have room one above the other on `length`.
-fn fit_upright(axis: &Axis, length: f64) -> impl Fn(&[Tick], f64) -> bool + '_ {
+/// Whether tick labels fit one above the other on `length`.
+fn fits_vertically(axis: &Axis, length: f64) -> impl Fn(&[Tick], f64) -> bool + '_ {
     move |ticks, space| {
-        let apart = |pair: &[Tick]| length * (axis.share(pair[1].0) - axis.share(pair[0].0));
+        let apart = |pair: &[Tick]| length * (axis.fraction(pair[1].0) - axis.fraction(pair[0].0));
         ticks.windows(2).all(|pair| apart(pair) >= space * 2.2 * SMALL)
     }
 }
@@ -134,7 +134,7 @@ fn map_colours(chart: &Chart) -> Option<&Axis> {
 }
 
 /// The width of the widest name beside a chart.
-fn names(chart: &Chart) -> f64 {
+fn name_width(chart: &Chart) -> f64 {
     let width = |layer: &Layer| match layer {
         Layer::Name { text, .. } => LEADER + TINY * ems(text),
         _ => 0.0,
@@ -142,8 +142,8 @@ fn names(chart: &Chart) -> f64 {
     chart.layers.iter().map(width).fold(0.0, f64::max)
 }
 
-/// Lays a chart out in a cell: left, top, right, bottom, pt. The margins become `least` at least, so that frames one below the other
-/// agree. The abscissa of a chart that is not `labelled` has neither numbers nor label: that of the chart below serves both.
+/// Lays a chart out in a cell: left, top, right, bottom, pt. Margins are at least `least`, so that stacked frames align. Unless
+/// `labelled`, the abscissa has neither numbers nor label: it shares those of the chart below.
 pub(crate) fn layout(
     chart: &Chart,
     [left, top, right, bottom]: Rect,
@@ -152,7 +152,7 @@ pub(crate) fn layout(
 ) -> Layout<'_> {
     let (x, y) = (&chart.x, &chart.y);
     let row = LINE * TEXT;
-    // Names of things stand above, as in a table; numbers below.
+    // Category names go above the frame, as in a table; numbers below.
     let named = !x.names.is_empty();
     let numbers = if named {
         LINE * SMALL * x.names.iter().map(|(_, name)| name.split('\n').count()).max().unwrap_or(1) as f64
@@ -175,23 +175,24 @@ pub(crate) fn layout(
         margins.bottom += row;
     }
     let height = bottom - top - margins.top - margins.bottom;
-    let y_ticks = ticks(y, fit_upright(y, height));
+    let y_ticks = ticks(y, fits_vertically(y, height));
     let y_label = if y.label.is_empty() { 0.0 } else { row + 2.0 };
     margins.left = widest(&y_ticks) + GAP + y_label;
-    let bar = map_colours(chart).map(|colours| (colours, ticks(colours, fit_upright(colours, height))));
+    let bar = map_colours(chart).map(|colours| (colours, ticks(colours, fits_vertically(colours, height))));
     let bar_width = bar.as_ref().map_or(0.0, |(colours, ticks)| {
         BAR[0] + BAR[1] + TICK + GAP + widest(ticks) + if colours.label.is_empty() { 0.0 } else { row + 2.0 }
     });
-    margins.right = bar_width.max(names(chart)).max(2.0);
+    margins.right = bar_width.max(name_width(chart)).max(2.0);
     margins = margins.with(least);
-    // The last number may stand out on the right; then the frame ends earlier.
+    // The last number may overhang on the right; then the frame is narrowed.
     let (mut x_ticks, mut second) = (Vec::new(), Vec::new());
     for _ in 0..3 {
         let width = right - left - margins.left - margins.right;
-        x_ticks = ticks(x, fit_across(x, width));
-        second = x.second.as_deref().map(|axis| ticks(axis, fit_across(axis, width))).unwrap_or_default();
+        x_ticks = ticks(x, fits_horizontally(x, width));
+        second =
+            x.second.as_deref().map(|axis| ticks(axis, fits_horizontally(axis, width))).unwrap_or_default();
         let out = |axis: &Axis, ticks: &[Tick]| {
-            let over = |(value, text): &Tick| 0.5 * SMALL * ems(text) - width * (1.0 - axis.share(*value));
+            let over = |(value, text): &Tick| 0.5 * SMALL * ems(text) - width * (1.0 - axis.fraction(*value));
             ticks.iter().map(over).fold(0.0, f64::max)
         };
         let above = x.second.as_deref().map_or(0.0, |axis| out(axis, &second));
@@ -226,7 +227,7 @@ fn labels(
     let large = |label: Label| Label { size: TEXT, ..label };
     let row = LINE * TEXT;
     let mut all = Vec::new();
-    // Of the frame, as far as the cell allows.
+    // Centred on the frame, as far as the cell allows.
     let middle = |text: &str| {
         let half = 0.5 * TEXT * ems(text);
         (0.5 * (left + right)).min(cell_right - half).max(cell_left + half)
@@ -245,7 +246,7 @@ fn labels(
     }
     if let Some(axis) = x.second.as_deref() {
         for (value, text) in &layout.second {
-            let at = left + (right - left) * axis.share(*value);
+            let at = left + (right - left) * axis.fraction(*value);
             all.push(Label::new(text, (at, top - GAP - 0.5 * SMALL), 0));
         }
         let at = (middle(&axis.label), top - GAP - SMALL - 0.5 * row);
@@ -268,7 +269,7 @@ fn labels(
     }
     if let Some(Bar { colours, rect, ticks }) = &layout.bar {
         for (value, text) in ticks {
-            let at = bottom - (bottom - top) * colours.share(*value);
+            let at = bottom - (bottom - top) * colours.fraction(*value);
             all.push(Label::new(text, (rect[2] + TICK + GAP, at), 1));
         }
         if !colours.label.is_empty() {

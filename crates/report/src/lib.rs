@@ -1,13 +1,13 @@
 //! Figures for print as SVG text.
 //!
-//! A [`Sheet`] is a figure as data: [`Chart`]s in rows and columns below one legend. A chart has two [`Axis`] and [`Layer`]s from
-//! back to front: lines, dots, bands, maps, marks, rules, labels. [`svg()`] lays it out and writes it. There is one algorithm for
-//! ticks, one for margins, one for names beside lines (in the place of a legend, where all of a chart find room), one palette ([`colour`]), and one style of subscripts: `E1max`, `k2` and `c2` in any text are set with
-//! their index lowered, `10⁻³` with a raised power.
+//! A [`Sheet`] is a figure as data: [`Chart`]s in rows and columns below one legend. A chart has two [`Axis`] and [`Layer`]s from back to
+//! front: lines, dots, bands, maps, marks, rules, labels. [`svg()`] lays it out and writes it. There is one algorithm for ticks, one for
+//! margins, one for direct labels (which replace the legend where all fit), one palette ([`colour`]), and one style of subscripts: `E1max`,
+//! `k2` and `c2` in any text get a subscript, `10⁻³` a superscript.
 //!
 //! All lengths are points. A figure is one column of a journal wide (85 mm) or its page (180 mm), and text has 8 pt there (names beside
-//! lines 7). Every figure has a title and a description for those who cannot see it, stands alone, and turns dark with the reader's
-//! pages. The same data give the same bytes.
+//! lines 7). Every figure has a title and a description for screen readers, is self-contained, and follows the reader's dark mode. The same
+//! data give the same bytes.
 //!
 //! ```
 //! use retune_report::colour::BLUE;

@@ -1,15 +1,16 @@
-//! Paths: lines cut off at the frame and without points that nobody could see, and the shapes of marks.
+//! Paths: lines clipped to the frame and simplified by less than can be seen, and the shapes of marks.
 
 use crate::chart::Shape;
 use crate::svg::units;
 use std::fmt::Write;
 
-/// Points are compared in hundredths of a point.
-const FINE: f64 = 100.0;
-/// How far a line may pass from a point that is left out, in these. With rounding it stays below 0.13 pt: a third of a pixel on a screen.
-const UNSEEN: f64 = 5.0;
-/// The most points that are left out in a row.
-const ROW: usize = 1000;
+/// Lines are simplified on a grid of hundredths of a point.
+const RESOLUTION: f64 = 100.0;
+/// Largest distance of a line from a point that is left out, in these units. With rounding it stays below 0.13 pt, a third of a pixel on
+/// a screen.
+const TOLERANCE: f64 = 5.0;
+/// Most consecutive points that are left out.
+const MAX_SKIPPED: usize = 1000;
 
 /// A rectangle: left, top, right, bottom, pt.
 pub(crate) type Rect = [f64; 4];
@@ -44,7 +45,7 @@ pub(crate) fn clip(
     (from <= to).then(|| [at(from, a), at(to, b)])
 }
 
-/// The runs of a line within a rectangle; it breaks at points that are not finite.
+/// The parts of a line within a rectangle; a point that is not finite breaks it.
 fn runs(points: impl Iterator<Item = (f64, f64)>, frame: Rect) -> Vec<Vec<(f64, f64)>> {
     let mut all: Vec<Vec<(f64, f64)>> = Vec::new();
     let mut before: Option<(f64, f64)> = None;
@@ -70,14 +71,14 @@ fn runs(points: impl Iterator<Item = (f64, f64)>, frame: Rect) -> Vec<Vec<(f64, 
     all
 }
 
-/// Where a coordinate turns, so that nothing may be left out; of a level stretch its end.
+/// Detects local extrema of either coordinate, which must be kept; of a level stretch, its end.
 #[derive(Default)]
-struct Turns {
+struct TurningPoints {
     heading: [i64; 2],
 }
 
-impl Turns {
-    /// Whether a coordinate turns at `point`.
+impl TurningPoints {
+    /// Whether a coordinate has an extremum at `point`.
     fn at(&mut self, point: (i64, i64), next: (i64, i64)) -> bool {
         let moves = [(next.0 - point.0).signum(), (next.1 - point.1).signum()];
         let turns = (0..2).any(|i| moves[i] * self.heading[i] < 0);
@@ -88,26 +89,26 @@ impl Turns {
     }
 }
 
-/// Whether a point lies so near a segment that it is not missed.
-fn unseen(from: (i64, i64), to: (i64, i64), point: (i64, i64)) -> bool {
+/// Whether a point lies so near a line that it can be left out.
+fn is_negligible(from: (i64, i64), to: (i64, i64), point: (i64, i64)) -> bool {
     let (dx, dy) = ((to.0 - from.0) as f64, (to.1 - from.1) as f64);
     let (px, py) = ((point.0 - from.0) as f64, (point.1 - from.1) as f64);
     let length = dx.hypot(dy);
-    if length == 0.0 { px.hypot(py) <= UNSEEN } else { (px * dy - py * dx).abs() <= UNSEEN * length }
+    if length == 0.0 { px.hypot(py) <= TOLERANCE } else { (px * dy - py * dx).abs() <= TOLERANCE * length }
 }
 
-/// The points of a run that are needed, in units.
-fn thinned(run: &[(f64, f64)]) -> Vec<(i64, i64)> {
-    let fine = |v: f64| (FINE * v).round() as i64;
+/// The points of a run that must be kept, in units of the drawing.
+fn simplify(run: &[(f64, f64)]) -> Vec<(i64, i64)> {
+    let fine = |v: f64| (RESOLUTION * v).round() as i64;
     let mut all: Vec<(i64, i64)> = run.iter().map(|&(x, y)| (fine(x), fine(y))).collect();
     all.dedup();
     let mut kept = vec![all[0]];
     let mut anchor = 0;
-    let mut turns = Turns::default();
+    let mut turns = TurningPoints::default();
     for i in 0..all.len() - 1 {
         let turn = turns.at(all[i], all[i + 1]);
-        let near = || all[anchor + 1..=i].iter().all(|&p| unseen(all[anchor], all[i + 1], p));
-        if i > 0 && (turn || i - anchor >= ROW || !near()) {
+        let near = || all[anchor + 1..=i].iter().all(|&p| is_negligible(all[anchor], all[i + 1], p));
+        if i > 0 && (turn || i - anchor >= MAX_SKIPPED || !near()) {
             kept.push(all[i]);
             anchor = i;
         }
@@ -115,7 +116,7 @@ fn thinned(run: &[(f64, f64)]) -> Vec<(i64, i64)> {
     if all.len() > 1 {
         kept.push(all[all.len() - 1]);
     }
-    let coarse = |v: i64| units(v as f64 / FINE);
+    let coarse = |v: i64| units(v as f64 / RESOLUTION);
     let mut kept: Vec<(i64, i64)> = kept.into_iter().map(|(x, y)| (coarse(x), coarse(y))).collect();
     kept.dedup();
     kept
@@ -125,9 +126,9 @@ fn thinned(run: &[(f64, f64)]) -> Vec<(i64, i64)> {
 pub(crate) fn polyline(points: impl Iterator<Item = (f64, f64)>, frame: Rect) -> String {
     let mut path = String::new();
     for run in runs(points, frame) {
-        let run = thinned(&run);
+        let run = simplify(&run);
         let _ = write!(path, "M{} {}", run[0].0, run[0].1);
-        // A point alone, as the round end of its line.
+        // A single point is drawn as a line of zero length, whose round ends show as a dot.
         path += if run.len() == 1 { "h0" } else { "l" };
         for (i, pair) in run.windows(2).enumerate() {
             let (dx, dy) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
@@ -138,7 +139,7 @@ pub(crate) fn polyline(points: impl Iterator<Item = (f64, f64)>, frame: Rect) ->
     path
 }
 
-/// A rectangle with whole units as its edges, so that neighbours share theirs.
+/// A rectangle with its edges rounded to whole units, so that neighbours share them.
 pub(crate) fn rectangle([left, top, right, bottom]: Rect) -> String {
     let [left, top, right, bottom] = [left, top, right, bottom].map(units);
     format!("M{left} {top}h{}v{}h{}z", right - left, bottom - top, left - right)

@@ -1,15 +1,15 @@
 //! A sheet: charts in rows and columns below one legend, and a caption.
 
 use crate::chart::{Chart, Key, Mark, Stroke};
-use crate::direct::{Direct, direct, line};
-use crate::draw::{area, chart, directs, marks, sample};
+use crate::direct::{DirectLabel, line, place_labels};
+use crate::draw::{area, chart, direct_labels, marks, sample};
 use crate::layout::{LINE, Margins, SMALL, TEXT, layout};
 use crate::path::Rect;
 use crate::svg::{Anchor, Font, Svg};
 use crate::text::{ems, lines};
 use serde::{Deserialize, Serialize};
 
-/// Width of a sheet: text has 8 pt and more in print.
+/// Width of a sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Width {
     /// A column of a journal, 85 mm.
@@ -41,16 +41,16 @@ pub struct Sheet {
     pub charts: Vec<Chart>,
     /// Charts in a row.
     pub columns: usize,
-    /// Whether the charts of a column have the abscissa in common: only the lowest has its numbers and its label.
+    /// Whether the charts of a column share their abscissa: only the lowest shows its numbers and label.
     pub stacked: bool,
-    /// The legend above the charts. Of a figure with one chart the names of up to six lines stand beside them instead, if they find places.
+    /// The legend above the charts. A figure with one chart labels up to six lines directly instead, if the labels fit.
     pub legend: Vec<(Key, String)>,
-    /// Lines of text below them; long ones are broken.
+    /// Paragraphs below the charts; long ones are broken into lines.
     pub caption: Vec<String>,
 }
 
 impl Sheet {
-    /// A figure of charts below one another, a column wide, without words: these are set afterwards.
+    /// A figure of charts below one another, a column wide; description, legend and caption are set afterwards.
     pub fn of(title: impl Into<String>, charts: Vec<Chart>) -> Self {
         Self {
             title: title.into(),
@@ -69,13 +69,13 @@ impl Sheet {
         Self { description: description.into(), width: Width::Page, ..Self::of(title, charts) }
     }
 
-    /// The words of its legend, one after the other.
+    /// The text of its legend.
     pub fn legend_words(&self) -> String {
         self.legend.iter().map(|(_, words)| words.as_str()).collect::<Vec<_>>().join("; ")
     }
 }
 
-/// A figure, and a version of it for narrow screens, on which the figure itself would be too small to read.
+/// A figure and, where it would be too small to read on a narrow screen, a version for that.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Drawing {
     /// For print and wide screens.
@@ -113,7 +113,7 @@ pub fn drawing(sheet: &Sheet) -> Drawing {
 fn on_width(sheet: &Sheet, page: f64, columns: usize) -> String {
     let mut out = Svg::default();
     let (columns, count) = (columns.max(1), sheet.charts.len());
-    let named = beside(sheet, page);
+    let named = labels_beside_lines(sheet, page);
     let is_shown = |key: &&(Key, String)| named.is_none() || line(key).is_none();
     let shown: Vec<(Key, String)> = sheet.legend.iter().filter(is_shown).cloned().collect();
     let mut y = EDGE + legend(&mut out, &shown, page);
@@ -137,12 +137,12 @@ fn on_width(sheet: &Sheet, page: f64, columns: usize) -> String {
             own().map(|i| layout(&sheet.charts[i], cells[i].0, cells[i].1, Margins::default()).margins);
         let least = margins.fold(Margins::default(), Margins::with);
         for i in own() {
-            // Frames one below the other begin at the same place; they end there, too, if they share their abscissa.
+            // Frames of a column are aligned on the left, and on the right too if they share their abscissa.
             let least = Margins { right: if sheet.stacked { least.right } else { 0.0 }, ..least };
             chart(&mut out, &layout(&sheet.charts[i], cells[i].0, cells[i].1, least));
         }
     }
-    directs(&mut out, &named.unwrap_or_default());
+    direct_labels(&mut out, &named.unwrap_or_default());
     y += 2.0;
     for line in sheet.caption.iter().flat_map(|text| lines(text, SMALL, page - 2.0 * EDGE)) {
         out.text(&line, (EDGE, y + 0.5 * LINE * SMALL), Font::new(SMALL, Anchor::Start));
@@ -151,16 +151,16 @@ fn on_width(sheet: &Sheet, page: f64, columns: usize) -> String {
     out.document((page, y + EDGE), &sheet.title, &sheet.description)
 }
 
-/// The names beside the lines of a figure with one chart, if all find a place: they then stand in no legend. Charts side by side share one legend.
-fn beside(sheet: &Sheet, page: f64) -> Option<Vec<Direct>> {
+/// Direct labels of a figure with one chart, which then replace the legend; none if one does not fit.
+fn labels_beside_lines(sheet: &Sheet, page: f64) -> Option<Vec<DirectLabel>> {
     let [chart] = sheet.charts.as_slice() else { return None };
     let others: Vec<(Key, String)> = sheet.legend.iter().filter(|key| line(key).is_none()).cloned().collect();
     let top = EDGE + legend(&mut Svg::default(), &others, page);
     let cell = [EDGE, top, page - EDGE, top + chart.height];
-    direct(&layout(chart, cell, true, Margins::default()), &sheet.legend)
+    place_labels(&layout(chart, cell, true, Margins::default()), &sheet.legend)
 }
 
-/// Draws the legend from the upper edge downwards; its height, pt.
+/// Draws the legend from the upper edge downwards; returns its height, pt.
 fn legend(out: &mut Svg, keys: &[(Key, String)], page: f64) -> f64 {
     let heading = |key: &Key| matches!(key, Key::Heading);
     let indent = keys

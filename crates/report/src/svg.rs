@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 /// Units of a drawing in a point.
 const UNITS: f64 = 10.0;
-/// Pixels for a point on a screen, as long as the page does not say otherwise.
+/// Pixels per point on a screen, unless the page sets another size.
 const PIXELS: f64 = 2.4;
 
 /// A length or coordinate in units.
@@ -14,7 +14,7 @@ pub(crate) fn units(points: f64) -> i64 {
     (UNITS * points).round() as i64
 }
 
-/// Which end of a text stands at its place.
+/// Which end of a text is at its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Anchor {
     Start,
@@ -30,7 +30,7 @@ pub(crate) struct Font {
     pub anchor: Anchor,
     /// Whether it is read from the bottom upwards.
     pub turned: bool,
-    /// Whether it has a rim in the colour of the paper, so that lines behind do not cross it.
+    /// Whether it has a rim in the paper's colour, so that lines behind do not cross it.
     pub halo: bool,
 }
 
@@ -47,25 +47,25 @@ pub(crate) struct Svg {
 }
 
 impl Svg {
-    /// A path that is filled.
-    pub fn fill(&mut self, path: &str, colour: &str, more: &str) {
+    /// A filled path.
+    pub fn fill(&mut self, path: &str, colour: &str, attributes: &str) {
         if !path.is_empty() {
-            let _ = writeln!(self.body, "<path d=\"{path}\" fill=\"{colour}\"{more}/>");
+            let _ = writeln!(self.body, "<path d=\"{path}\" fill=\"{colour}\"{attributes}/>");
         }
     }
 
-    /// A path that is drawn as a line; `more` are further attributes, each with a space before it.
-    pub fn line(&mut self, path: &str, colour: Colour, width: f64, more: &str) {
+    /// A stroked path; each of the further `attributes` begins with a space.
+    pub fn line(&mut self, path: &str, colour: Colour, width: f64, attributes: &str) {
         if !path.is_empty() {
             let _ = writeln!(
                 self.body,
-                "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{}\"{more}/>",
+                "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{}\"{attributes}/>",
                 units(width)
             );
         }
     }
 
-    /// A line of text, the middle of its small letters at a place.
+    /// A line of text, centred vertically on its lower-case letters.
     pub fn text(&mut self, text: &str, (x, y): (f64, f64), font: Font) {
         // The height of a letter is some 0.7 of the size.
         let down = 0.35 * font.size;
@@ -88,7 +88,7 @@ impl Svg {
         } else {
             String::new()
         };
-        // Some readers drop a space at the beginning of an element, as after an index, unless it is asked for.
+        // Some viewers drop a space at the beginning of an element, as after an index, unless told to preserve it.
         let spaces = if text.contains(' ') { " xml:space=\"preserve\"" } else { "" };
         let (size, text) = (units(font.size), markup(text));
         let _ = writeln!(
@@ -100,7 +100,7 @@ impl Svg {
 
     /// The whole document, with a title and a description for those who cannot see it.
     pub fn document(&self, (width, height): (f64, f64), title: &str, description: &str) -> String {
-        // Several figures may stand in one page, and one figure in several widths.
+        // One page may hold several figures, and one figure in several widths.
         let id = hash(&format!("{title}\n{description}\n{width} {height}\n{}", self.body));
         let [title, description] = [title, description].map(escape);
         let (w, h) = (units(width), units(height));

@@ -1,4 +1,4 @@
-//! A table as data: named columns with units, rows of cells. Its CSV and its JSON are written here alone.
+//! A table as data: named columns with units, rows of cells. The only writer of CSV and JSON tables.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
@@ -8,14 +8,14 @@ use std::fmt;
 /// A column.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Column {
-    /// Its name, as it stands in files.
+    /// Its name in files.
     pub name: String,
     /// Its SI unit; empty for texts and pure numbers.
     pub unit: Cow<'static, str>,
 }
 
 impl Column {
-    /// A column of a name and a unit.
+    /// A column with a name and a unit.
     pub fn new(name: impl Into<String>, unit: impl Into<Cow<'static, str>>) -> Self {
         Self { name: name.into(), unit: unit.into() }
     }
@@ -26,7 +26,7 @@ impl Column {
     }
 }
 
-/// A column of a table as a page shows it.
+/// A column of a table as shown on a page.
 #[derive(Clone, Debug)]
 pub struct Shown<'a> {
     name: &'a str,
@@ -36,19 +36,19 @@ pub struct Shown<'a> {
 }
 
 impl Shown<'_> {
-    /// The same under another heading.
+    /// Sets another heading.
     #[must_use]
     pub fn called(self, heading: impl Into<String>) -> Self {
         Self { heading: heading.into(), ..self }
     }
 
-    /// The same with these words where there is no value.
+    /// Sets the text of cells without a value.
     #[must_use]
     pub fn or(self, none: &'static str) -> Self {
         Self { none, ..self }
     }
 
-    /// A cell as it is shown.
+    /// The text of a cell.
     fn text(&self, cell: &Cell) -> String {
         match cell {
             Cell::Number(value) if !value.is_nan() => (self.number)(*value),
@@ -59,7 +59,7 @@ impl Shown<'_> {
     }
 }
 
-/// A cell. In files numbers have all their digits, so that they can be compared to the last bit.
+/// A cell. In files numbers have all digits, so that they round-trip exactly.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Cell {
     /// A number; an empty field where it is NaN.
@@ -73,12 +73,12 @@ pub enum Cell {
 }
 
 impl Cell {
-    /// A number, or no value where it is not finite.
+    /// A number; no value if it is not finite.
     pub fn finite(value: f64) -> Self {
         if value.is_finite() { Self::Number(value) } else { Self::Empty }
     }
 
-    /// Its number; NaN of a text or of no value.
+    /// Its number; NaN for a text or no value.
     pub fn number(&self) -> f64 {
         match self {
             Self::Number(value) => *value,
@@ -92,7 +92,7 @@ impl Cell {
         quoted(&self.to_string())
     }
 
-    /// As JSON; null where it is no finite number.
+    /// As JSON; null if it is not a finite number.
     fn json(&self) -> Value {
         match self {
             Self::Number(value) => json!(value),
@@ -103,7 +103,7 @@ impl Cell {
     }
 }
 
-/// As it stands on a page: a number with all its digits, nothing where there is no value.
+/// As shown on a page: a number with all digits, nothing for no value.
 impl fmt::Display for Cell {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
@@ -180,17 +180,17 @@ impl Table {
         Self { columns: columns.into_iter().collect(), rows: Vec::new() }
     }
 
-    /// The same, of columns whose units do not matter, as they stand in the first line of a CSV file.
+    /// A table without rows or units; names as in the first line of a CSV file.
     pub fn named(names: &str) -> Self {
         Self::new(names.split(',').map(|name| Column::new(name, "")))
     }
 
-    /// The same of a table for readers, whose columns have their units in their names, as they stand in the head of a Markdown table.
+    /// A table without rows whose names include the units; headings as in the first line of a Markdown table.
     pub fn headed(names: &str) -> Self {
         Self::new(names.split(" | ").map(|name| Column::new(name, "")))
     }
 
-    /// The same with further rows.
+    /// Appends rows.
     #[must_use]
     pub fn with(mut self, rows: impl IntoIterator<Item = Vec<Cell>>) -> Self {
         rows.into_iter().for_each(|row| self.push(row));
@@ -203,7 +203,7 @@ impl Table {
         self.rows.push(row);
     }
 
-    /// The same with those rows alone that are to be kept, by as many answers.
+    /// Keeps only the rows whose entry in `keep` is true; one entry per row.
     #[must_use]
     pub fn only(mut self, keep: impl IntoIterator<Item = bool>) -> Self {
         let mut keep = keep.into_iter();
@@ -211,31 +211,31 @@ impl Table {
         self
     }
 
-    /// The place of a column.
-    fn place(&self, name: &str) -> Option<usize> {
+    /// The index of a column.
+    fn index_of(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|column| column.name == name)
     }
 
     /// The numbers of a column; NaN where there is none.
     pub fn column(&self, name: &str) -> Option<Vec<f64>> {
-        let place = self.place(name)?;
+        let place = self.index_of(name)?;
         Some(self.rows.iter().map(|row| row[place].number()).collect())
     }
 
-    /// The unit of a column; empty where there is no such column.
+    /// The unit of a column; empty if there is no such column.
     pub fn unit(&self, name: &str) -> &str {
-        self.place(name).map_or("", |place| &self.columns[place].unit)
+        self.index_of(name).map_or("", |place| &self.columns[place].unit)
     }
 
-    /// A cell; none where there is no such column.
+    /// A cell; none if there is no such column.
     pub fn cell(&self, row: usize, name: &str) -> Option<&Cell> {
-        self.rows.get(row)?.get(self.place(name)?)
+        self.rows.get(row)?.get(self.index_of(name)?)
     }
 
-    /// A column for a page: under its own heading, texts and counts as they are, numbers as `number` writes them, nothing where there is no
-    /// value.
+    /// A column for a page, under its own heading. `number` formats its numbers; texts and counts are unchanged; no value gives an empty
+    /// text.
     pub fn show<'a>(&self, name: &'a str, number: fn(f64) -> String) -> Shown<'a> {
-        let heading = self.place(name).map_or_else(String::new, |place| self.columns[place].heading());
+        let heading = self.index_of(name).map_or_else(String::new, |place| self.columns[place].heading());
         Shown { name, heading, number, none: "" }
     }
 
@@ -246,7 +246,7 @@ impl Table {
 
     /// Some columns for a page: their headings, and the texts of each row.
     pub fn shown(&self, columns: &[Shown]) -> (Vec<String>, Vec<Vec<String>>) {
-        let places: Vec<Option<usize>> = columns.iter().map(|column| self.place(column.name)).collect();
+        let places: Vec<Option<usize>> = columns.iter().map(|column| self.index_of(column.name)).collect();
         let text = |row: &[Cell], column: &Shown, place: Option<usize>| {
             column.text(place.map_or(&Cell::Empty, |place| &row[place]))
         };
@@ -274,12 +274,12 @@ impl Table {
     }
 }
 
-/// A row as a line of CSV, with its end: for a table that is too long to be held.
+/// A row as a line of CSV with its line end, for a table too long to be held in memory.
 pub fn line(row: &[Cell]) -> String {
     row.iter().map(Cell::field).collect::<Vec<_>>().join(",") + "\n"
 }
 
-/// A text as a field.
+/// A text as a CSV field.
 fn quoted(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))

@@ -1,15 +1,15 @@
-//! Text with subscripts and superscripts: how it is read, how wide it is, how it breaks into lines.
+//! Text with subscripts and superscripts: parsing, width, line breaks.
 
 use std::fmt::Write;
 
 /// Letters that carry an index: `E1max`, `k2`, `c2`, `x1`, `a1`, `R1`, `t0`.
 const SYMBOLS: &str = "EkcxvamRtF";
-/// Size of an index, as a share of its text's.
+/// Size of an index relative to its text.
 const INDEX: f64 = 0.72;
 /// Depth of a subscript and height of a superscript, as shares of the size of the text.
 const SHIFTS: [f64; 3] = [0.0, 0.2, -0.36];
 
-/// Where a piece of text stands.
+/// The level of a piece of text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Level {
     Base,
@@ -31,7 +31,7 @@ fn index(c: char) -> Option<(Level, char)> {
     }
 }
 
-/// The index after a symbol at `at`, its end: digits, and `max`.
+/// The end of the index of the symbol at `at`: digits, and `max`.
 fn index_end(chars: &[char], at: usize) -> Option<usize> {
     let before = at.checked_sub(1).map(|i| chars[i]);
     if !SYMBOLS.contains(chars[at]) || before.is_some_and(|c| c.is_alphanumeric() || c == '_') {
@@ -93,13 +93,13 @@ pub(crate) fn markup(text: &str) -> String {
     out
 }
 
-/// Text with the signs of XML escaped, and without the characters that XML cannot hold.
+/// Text escaped for XML, without the characters that XML cannot hold.
 pub(crate) fn escape(text: &str) -> String {
     let text: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// An estimate of a width in multiples of the size, on the safe side: as in the wide DejaVu Sans.
+/// A conservative estimate of the width, as a multiple of the font size: that of the wide DejaVu Sans.
 pub(crate) fn ems(text: &str) -> f64 {
     let glyph = |c: char| match c {
         'i' | 'j' | 'l' | '\'' | '|' => 0.29,
@@ -116,7 +116,7 @@ pub(crate) fn ems(text: &str) -> f64 {
     pieces(text).into_iter().map(width).sum()
 }
 
-/// The lines of a text that is `size` high and must not be wider than `width`; a single word may be.
+/// Breaks a text of height `size` into lines no wider than `width`; a single word may be wider.
 pub(crate) fn lines(text: &str, size: f64, width: f64) -> Vec<String> {
     let mut all: Vec<String> = Vec::new();
     for word in text.split_whitespace() {

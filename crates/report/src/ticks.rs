@@ -1,26 +1,26 @@
-//! Ticks: at round numbers, as many as have room, between 3 and 9 of them wherever that is possible.
+//! Ticks at round numbers: as many as fit, between 3 and 9 wherever possible.
 
 use crate::axis::{Axis, Scale};
 
-/// A tick with its number in words.
+/// The value of a tick and its label.
 pub(crate) type Tick = (f64, String);
 
 /// Most ticks of an axis.
-const MOST: usize = 9;
-/// Fewest, if they have room.
-const LEAST: usize = 3;
+const MAX_TICKS: usize = 9;
+/// Fewest ticks, if they fit.
+const MIN_TICKS: usize = 3;
 /// Numbers of more characters than this are written with a power of ten.
-const LONG: usize = 6;
+const MAX_CHARACTERS: usize = 6;
 
-/// The ticks of an axis: the closest with room for their labels. `fits` says whether some have it, with a share of the usual space
-/// between them; they stand closer where there would be too few.
+/// The ticks of an axis: the densest whose labels fit. `fits(ticks, s)` tells whether they fit with `s` times the usual space
+/// between them; the space is reduced where too few would fit.
 pub(crate) fn ticks(axis: &Axis, fits: impl Fn(&[Tick], f64) -> bool) -> Vec<Tick> {
     if !axis.names.is_empty() {
         return axis.names.clone();
     }
     let all: Vec<Vec<Tick>> =
         candidates(axis).into_iter().map(|(values, step)| label(values, step)).collect();
-    for (least, space) in [(LEAST, 1.0), (LEAST, 0.6), (2, 0.6), (1, 0.6)] {
+    for (least, space) in [(MIN_TICKS, 1.0), (MIN_TICKS, 0.6), (2, 0.6), (1, 0.6)] {
         if let Some(ticks) = all.iter().find(|ticks| ticks.len() >= least && fits(ticks, space)) {
             return ticks.clone();
         }
@@ -28,7 +28,7 @@ pub(crate) fn ticks(axis: &Axis, fits: impl Fn(&[Tick], f64) -> bool) -> Vec<Tic
     Vec::new()
 }
 
-/// Ticks without a label: the other multiples of each power of ten, where every power has its label.
+/// Minor ticks: the other multiples of each power of ten, where every power is labelled.
 pub(crate) fn minor(axis: &Axis, ticks: &[Tick]) -> Vec<f64> {
     let decades = ticks.windows(2).all(|pair| (pair[1].0 / pair[0].0 - 10.0).abs() < 1e-6);
     if axis.scale != Scale::Log || ticks.len() < 2 || !decades {
@@ -39,12 +39,12 @@ pub(crate) fn minor(axis: &Axis, ticks: &[Tick]) -> Vec<f64> {
     all.filter(|value| axis.holds(*value)).collect()
 }
 
-/// Sets of ticks, from close to wide; with each its step, or zero if it has none.
+/// Candidate sets of ticks, densest first, each with its step; zero if it has none.
 fn candidates(axis: &Axis) -> Vec<(Vec<f64>, f64)> {
     let mut all = Vec::new();
     if axis.scale == Scale::Log {
         let decimal = in_decades(axis, &[1.0, 2.0, 5.0], 1);
-        let few = decimal.len() < LEAST;
+        let few = decimal.len() < MIN_TICKS;
         if !few {
             all.push((decimal, 0.0));
             all.extend((1..400).map(|every| (in_decades(axis, &[1.0], every), 0.0)));
@@ -56,7 +56,7 @@ fn candidates(axis: &Axis) -> Vec<(Vec<f64>, f64)> {
     } else {
         all.extend(multiples(axis));
     }
-    all.retain(|(values, _)| (1..=MOST).contains(&values.len()));
+    all.retain(|(values, _)| (1..=MAX_TICKS).contains(&values.len()));
     all
 }
 
@@ -65,14 +65,14 @@ fn powers(axis: &Axis) -> (i32, i32) {
     (axis.range.0.log10().floor() as i32, axis.range.1.log10().ceil() as i32)
 }
 
-/// Some multiples of every so many powers of ten.
+/// The multiples `factors` of every `every`-th power of ten.
 fn in_decades(axis: &Axis, factors: &[f64], every: i32) -> Vec<f64> {
     let (from, to) = axis.range;
     let (first, last) = powers(axis);
     // Powers divisible by `every`, so that 1 is among them.
     let all = (first..=last).filter(|n| n % every == 0);
     let values = all.flat_map(|n| factors.iter().map(move |f| f * 10_f64.powi(n)));
-    values.filter(|v| (from * (1.0 - 1e-9)..=to * (1.0 + 1e-9)).contains(v)).take(MOST + 1).collect()
+    values.filter(|v| (from * (1.0 - 1e-9)..=to * (1.0 + 1e-9)).contains(v)).take(MAX_TICKS + 1).collect()
 }
 
 /// Multiples of 1, 2 and 5 times powers of ten.
@@ -82,17 +82,17 @@ fn multiples(axis: &Axis) -> impl Iterator<Item = (Vec<f64>, f64)> + '_ {
     let steps = (power - 1..=power).flat_map(|n| [1.0, 2.0, 5.0].map(|f| f * 10_f64.powi(n)));
     steps.map(move |step| {
         let (first, last) = ((from / step - 1e-9).ceil() as i64, (to / step + 1e-9).floor() as i64);
-        ((first..=last).take(MOST + 1).map(|i| i as f64 * step).collect(), step)
+        ((first..=last).take(MAX_TICKS + 1).map(|i| i as f64 * step).collect(), step)
     })
 }
 
-/// Numbers in words: as decimals, or, if one of them were long, with powers of ten where these are shorter.
+/// Formats numbers: as decimals, or, if one of them were long, with powers of ten where these are shorter.
 fn label(values: Vec<f64>, step: f64) -> Vec<Tick> {
     let decimals = |size: f64| (-(size.log10() + 1e-9).floor()).max(0.0) as usize;
     let places = |value: f64| decimals(if step > 0.0 { step } else { value });
     let plain: Vec<String> = values.iter().map(|&v| minus(format!("{v:.*}", places(v)))).collect();
     let longest = |words: &[String]| words.iter().map(|word| word.chars().count()).max().unwrap_or(0);
-    let words = if longest(&plain) <= LONG + usize::from(values.iter().any(|v| *v < 0.0)) {
+    let words = if longest(&plain) <= MAX_CHARACTERS + usize::from(values.iter().any(|v| *v < 0.0)) {
         plain
     } else {
         let size = values.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
@@ -112,7 +112,7 @@ fn minus(text: String) -> String {
     text.replace('-', "−")
 }
 
-/// `2.5·10⁻⁷`; without a factor of one, and small powers in full.
+/// `2.5·10⁻⁷`; a factor of one is left out, and small powers are written in full.
 fn scientific(value: f64, step: f64, power: i32) -> String {
     if value == 0.0 {
         return "0".to_owned();
@@ -245,7 +245,7 @@ mod tests {
         let decades = vec![(1.0, String::new()), (10.0, String::new())];
         let small = minor(&axis, &decades);
         assert!(small.contains(&0.5) && small.contains(&2000.0) && small.contains(&30.0), "{small:?}");
-        assert!(!small.iter().any(|v| axis.share(*v) < 0.0));
+        assert!(!small.iter().any(|v| axis.fraction(*v) < 0.0));
         assert!(minor(&axis, &[(1.0, String::new()), (100.0, String::new())]).is_empty());
     }
 }

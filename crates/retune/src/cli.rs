@@ -276,12 +276,12 @@ pub struct Evaluate {
     pub threads: Option<u16>,
 }
 
-/// What a shell completes after `--set`.
+/// Shell completions of `--set`.
 fn assignments() -> Vec<String> {
     Settable::all().map(|settable| format!("{}=", settable.symbol())).collect()
 }
 
-/// What `--set` is for.
+/// The help of `--set`.
 fn settings() -> String {
     let names: Vec<&str> = Settable::all().map(Settable::symbol).collect();
     format!(

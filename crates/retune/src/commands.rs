@@ -1,4 +1,4 @@
-//! The commands: from arguments to a job, and from its results to the screen.
+//! Runs commands: turns arguments into a job and shows its results.
 
 use crate::cli::{self, Cli, Command, Kind};
 use crate::screen::{self, Screen};
@@ -115,12 +115,12 @@ fn design(arguments: &cli::Design) -> Result<(), Error> {
     made(designed, |compared| compared.check_limits())
 }
 
-/// A design that breaks the limits of its study has an exit code of its own.
+/// Refuses a design that breaks the limits of its study: it has its own exit code.
 fn found(tuned: Done<Optimum>) -> Result<(), Error> {
     made(tuned, |optimum| optimum.check_limits())
 }
 
-/// The check of results that were made now.
+/// Checks results unless they were finished by an earlier run.
 fn made<T>(done: Done<T>, check: impl FnOnce(T) -> Result<(), Error>) -> Result<(), Error> {
     match done {
         Done::Made(results) => check(results),

@@ -4,8 +4,8 @@
 use std::ffi::OsString;
 use std::sync::OnceLock;
 
-/// The environment variable that the justfile sets to `just`, whose recipes are named like the commands; it replaces the program's
-/// name in printed commands.
+/// An environment variable that replaces the program's name in printed commands. The justfile sets it to `just`, since its recipes are
+/// named like the commands.
 pub const RUN_AS: &str = "RETUNE_RUN_AS";
 
 /// The words of the command line of this process.
@@ -24,7 +24,7 @@ pub fn say_how_to_resume() {
     use std::io::Write;
     static ONCE: std::sync::Once = std::sync::Once::new();
     ONCE.call_once(|| {
-        // SIGHUP is not handled, so that `nohup` works as usual; without `nohup` the signal ends the run, which can be resumed all the same.
+        // SIGHUP is not handled, so that `nohup` works as usual. Without `nohup` it ends the run, which can still be resumed.
         let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else { return };
         let wait = move || {
             if signals.forever().next().is_some() {
@@ -111,7 +111,7 @@ mod tests {
         );
     }
 
-    /// The words go back through a shell to what they were.
+    /// A shell parses the quoted words back to the originals.
     #[test]
     fn contract_any_argument_survives_a_shell() {
         let words: [&[u8]; 6] = [b"printf", b"%s|", b"it's", b"\x1b[31m", b"\xff\xfe\\'", b"tab\tand\nline"];

@@ -11,7 +11,7 @@ use clap::Parser;
 use cli::Cli;
 use std::ffi::OsString;
 
-/// Runs the program with the words of its command line, of which the first is its own name. Returns its exit code.
+/// Runs the program with the words of its command line, the first being its own name. Returns its exit code.
 pub fn program(words: Vec<OsString>) -> u8 {
     let arguments = match Cli::try_parse_from(&words) {
         Ok(arguments) => arguments,

@@ -1,7 +1,7 @@
 //! Progress of a stage: a bar if standard error is a terminal, else a line every half minute.
 //!
-//! Rate and remaining time count new work only: values from the journal of an interrupted run take no time. A stage that tells the best so far
-//! says that instead: `2 of 4: SSVI NES, 27 s, best 21.3 kJ`.
+//! Rate and remaining time count new work only: values from the journal of an interrupted run take no time. A stage that reports the best
+//! so far shows that instead: `2 of 4: SSVI NES, 27 s, best 21.3 kJ`.
 
 use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 use std::io::{IsTerminal, Write};
@@ -9,8 +9,8 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Time between two lines if there is no terminal.
-const TELL_EVERY: Duration = Duration::from_secs(30);
+/// Time between two lines if standard error is not a terminal.
+const LINE_INTERVAL: Duration = Duration::from_secs(30);
 
 /// The progress of a stage.
 pub struct Stage {
@@ -26,20 +26,27 @@ struct Count {
     all: u64,
     begun: Instant,
     done: AtomicU64,
-    /// Of these, those that were already known.
+    /// How many of these were already known.
     known: AtomicU64,
-    /// Time of the last line, ms after the beginning.
-    told: AtomicU64,
-    /// The best so far, in words, where the stage tells it.
+    /// When the last line was due, ms after the beginning.
+    last_line: AtomicU64,
+    /// The best so far in words, if the stage reports it.
     best: Mutex<Option<String>>,
 }
 
 impl Stage {
     /// A stage of `all` evaluations; nothing is shown if `quiet`.
     pub fn new(what: &'static str, all: u64, quiet: bool) -> Self {
-        let [done, known, told] = [0; 3].map(AtomicU64::new);
-        let count =
-            Arc::new(Count { what, all, begun: Instant::now(), done, known, told, best: Mutex::default() });
+        let [done, known, last_line] = [0; 3].map(AtomicU64::new);
+        let count = Arc::new(Count {
+            what,
+            all,
+            begun: Instant::now(),
+            done,
+            known,
+            last_line,
+            best: Mutex::default(),
+        });
         let bar = if quiet { ProgressBar::hidden() } else { bar(&count) };
         Self { bar, count, lines: !quiet && !std::io::stderr().is_terminal() }
     }
@@ -53,7 +60,7 @@ impl retune_jobs::Progress for Stage {
     fn inc(&self, more: u64) {
         self.count.done.fetch_add(more, Relaxed);
         self.bar.inc(more);
-        if let Some(line) = self.lines.then(|| self.count.tell(self.count.begun.elapsed())).flatten() {
+        if let Some(line) = self.lines.then(|| self.count.due_line(self.count.begun.elapsed())).flatten() {
             let _ = writeln!(std::io::stderr(), "{line}"); // a closed standard error does not end the run
         }
     }
@@ -85,10 +92,10 @@ fn bar(count: &Arc<Count>) -> ProgressBar {
 
 impl Count {
     /// The line to print, if one is due.
-    fn tell(&self, elapsed: Duration) -> Option<String> {
-        let (now, last) = (elapsed.as_millis() as u64, self.told.load(Relaxed));
-        let due = now >= last + TELL_EVERY.as_millis() as u64;
-        let mine = due && self.told.compare_exchange(last, now, Relaxed, Relaxed).is_ok();
+    fn due_line(&self, elapsed: Duration) -> Option<String> {
+        let (now, last) = (elapsed.as_millis() as u64, self.last_line.load(Relaxed));
+        let due = now >= last + LINE_INTERVAL.as_millis() as u64;
+        let mine = due && self.last_line.compare_exchange(last, now, Relaxed, Relaxed).is_ok();
         let Self { what, all, .. } = self;
         let done = self.done.load(Relaxed);
         mine.then(|| match self.best() {
@@ -97,11 +104,11 @@ impl Count {
         })
     }
 
-    /// Time and the best so far; of a stage that tells none, rate and remaining time.
+    /// Time and the best so far; for a stage that reports none, rate and remaining time.
     fn state(&self, elapsed: Duration) -> String {
         match self.best() {
             Some(best) => format!("{} s, best {best}", elapsed.as_secs()),
-            None => format!("{}, {}", words(self.rate(elapsed)), self.left(elapsed)),
+            None => format!("{}, {}", words(self.rate(elapsed)), self.remaining(elapsed)),
         }
     }
 
@@ -116,10 +123,10 @@ impl Count {
     }
 
     /// The remaining time, in words.
-    fn left(&self, elapsed: Duration) -> String {
+    fn remaining(&self, elapsed: Duration) -> String {
         let rest = self.all.saturating_sub(self.done.load(Relaxed)) as f64;
         match Duration::try_from_secs_f64(rest / self.rate(elapsed)) {
-            Ok(left) => format!("{} left", HumanDuration(left)),
+            Ok(remaining) => format!("{} left", HumanDuration(remaining)),
             Err(_) => "time left not known yet".to_owned(),
         }
     }
@@ -148,14 +155,14 @@ mod tests {
         (0..900).for_each(|_| progress.known());
         let count = &progress.count;
         let at = Duration::from_secs;
-        assert_eq!((count.rate(at(25)), count.left(at(25)).as_str()), (2.0, "25 seconds left"));
-        assert_eq!(count.tell(at(25)), None, "not yet due");
-        assert_eq!(count.tell(at(30)).as_deref(), Some("surf: 950 of 1000, 1.7/s, 30 seconds left"));
-        assert_eq!(count.tell(at(59)), None);
-        assert!(count.tell(at(60)).is_some());
+        assert_eq!((count.rate(at(25)), count.remaining(at(25)).as_str()), (2.0, "25 seconds left"));
+        assert_eq!(count.due_line(at(25)), None, "not yet due");
+        assert_eq!(count.due_line(at(30)).as_deref(), Some("surf: 950 of 1000, 1.7/s, 30 seconds left"));
+        assert_eq!(count.due_line(at(59)), None);
+        assert!(count.due_line(at(60)).is_some());
         progress.best("21.3 kJ");
-        assert_eq!(count.tell(at(91)).as_deref(), Some("950 of 1000: surf, 91 s, best 21.3 kJ"));
+        assert_eq!(count.due_line(at(91)).as_deref(), Some("950 of 1000: surf, 91 s, best 21.3 kJ"));
         let fresh = Stage::new("surf", 10, true);
-        assert_eq!(fresh.count.left(at(1)), "time left not known yet");
+        assert_eq!(fresh.count.remaining(at(1)), "time left not known yet");
     }
 }

@@ -14,17 +14,17 @@ use std::path::Path;
 pub struct Screen {
     quiet: bool,
     verbose: bool,
-    /// Whether nothing is shown but the answer, as JSON.
+    /// Whether only the answer is shown, as JSON.
     json: bool,
 }
 
 impl Screen {
-    /// A screen that shows results, unless `quiet` also progress, and where `verbose` also the log.
+    /// A screen that shows results; also progress unless `quiet`, and the log if `verbose`.
     pub fn new(quiet: bool, verbose: bool) -> Self {
         Self { quiet, verbose, json: false }
     }
 
-    /// The same that shows nothing but the answer, as JSON, where asked for.
+    /// If `json`, shows only the answer, as JSON.
     pub fn as_json(self, json: bool) -> Self {
         Self { json, quiet: self.quiet || json, ..self }
     }
@@ -59,7 +59,7 @@ impl Observer for Screen {
         if self.verbose { self.line(line) } else { Ok(()) }
     }
     fn warn(&self, words: &str) {
-        say("warning", words);
+        write_stderr("warning", words);
     }
     fn progress(&self, stage: &'static str, count: u64) -> Box<dyn Progress> {
         Box::new(progress::Stage::new(stage, count, self.quiet))
@@ -77,10 +77,10 @@ impl Observer for Screen {
 
 /// Shows why a command failed. If standard error cannot be written, only the exit code reports the failure.
 pub fn show_error(error: &Error) {
-    say("error", &as_typed(&error.to_string(), std::env::var(interrupt::RUN_AS).ok()));
+    write_stderr("error", &as_typed(&error.to_string(), std::env::var(interrupt::RUN_AS).ok()));
 }
 
-/// A message whose commands begin with `run_as` instead of the program's name, if it is given.
+/// Replaces the program's name in the commands of a message by `run_as`, if it is given.
 fn as_typed(words: &str, run_as: Option<String>) -> String {
     match run_as {
         Some(run_as) => words.replace("`retune ", &format!("`{run_as} ")),
@@ -93,24 +93,24 @@ pub fn complain(words: &str) {
     let _ = writeln!(std::io::stderr(), "{}", visible(words));
 }
 
-/// Writes to standard error, and ignores errors of doing so.
-fn say(what: &str, words: &str) {
+/// Writes to standard error and ignores write errors.
+fn write_stderr(what: &str, words: &str) {
     let mut out = std::io::stderr().lock();
     let colour = if what == "error" { "31" } else { "33" };
     let what = if has_colour(&out) { format!("\x1b[1;{colour}m{what}\x1b[0m") } else { what.to_owned() };
     let _ = writeln!(out, "{what}: {}", visible(words));
 }
 
-/// Whether a stream shows colours: a terminal, unless its user wants none (<https://no-color.org>).
+/// Whether a stream shows colours: it is a terminal, and the user has not disabled them (<https://no-color.org>).
 fn has_colour(stream: &impl IsTerminal) -> bool {
     let wants_none = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     stream.is_terminal() && !wants_none && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
 }
 
-/// How the lines begin that answer the question.
+/// How lines begin that answer the user's question.
 const ANSWERS: [&str; 4] = ["Build ", "None was found", "  verdict ", "  build "];
 
-/// A text whose lines that answer the question are bold, where the terminal can.
+/// Makes the lines that answer the question bold if the terminal has colours.
 fn emphasised(text: &str, colour: bool) -> String {
     let line = |line: &str| match colour && ANSWERS.iter().any(|answer| line.starts_with(answer)) {
         true => format!("\x1b[1m{line}\x1b[0m"),
@@ -125,7 +125,7 @@ pub fn show_usage(error: &clap::Error) -> u8 {
     {
         let _ = write!(std::io::stderr(), "{}", visible(&error.render().to_string()));
     } else {
-        let _ = error.print(); // in colour; it repeats nothing that the user typed
+        let _ = error.print(); // in colour; repeats nothing that the user typed
     }
     u8::try_from(error.exit_code()).unwrap_or(crate::exit::WRONG)
 }

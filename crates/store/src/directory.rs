@@ -1,4 +1,4 @@
-//! A directory of results while they are made: opened, filled, read.
+//! A directory of results while they are being made: opened, filled, read.
 
 use crate::error::Error;
 use crate::identity::{Identity, json_text};
@@ -15,7 +15,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// A directory of results while they are made. One process at a time has it.
+/// A directory of results while they are being made. One process at a time holds it.
 pub struct Directory {
     path: PathBuf,
     unfinished: PathBuf,
@@ -24,22 +24,22 @@ pub struct Directory {
     extent: Extent,
     identity: Identity,
     is_ours: Box<dyn Fn(&str) -> bool + Send + Sync>,
-    /// The directories below in which searches were begun.
+    /// The subdirectories in which this run began searches.
     parts: Mutex<BTreeSet<String>>,
-    /// Those of unfinished work that is discarded.
-    thrown_away: BTreeSet<String>,
+    /// The subdirectories of discarded unfinished work.
+    discarded_parts: BTreeSet<String>,
     warning: Option<String>,
     _lock: Lock,
 }
 
 impl Directory {
     /// Opens the directory, created if there is none, for work of this identity. Earlier results stay until the new ones are complete
-    /// and are then removed: results of two studies must not be mixed. `is_ours` tells the names of the files that the work may write;
-    /// where its extent is not [`Extent::Whole`], only these are replaced.
+    /// and are then removed: results of two studies must not be mixed. `is_ours` tells which file names the work may write; unless its
+    /// extent is [`Extent::Whole`], only these are replaced.
     ///
     /// # Errors
-    /// The directory cannot be made or written to; another process has it; there is something in it that `order` does not allow to
-    /// be replaced; or there is unfinished work of another study in it, or any if `order` does not say what becomes of it.
+    /// The directory cannot be created or written to; another process holds it; it contains something that `order` does not allow to
+    /// be replaced; or it contains unfinished work of another study, or any that `order` neither resumes nor discards.
     pub fn open(
         path: &Path,
         order: &Order,
@@ -54,8 +54,8 @@ impl Directory {
         let found = Unfinished::find(path, order.begin, identity)?;
         order.may_replace(path, extent, identity, &is_ours)?;
         let unfinished = path.join(UNFINISHED);
-        let (journal, thrown_away, warning) = found.take_up(&unfinished, identity)?;
-        // The names of the journal and its directory must outlive a power cut as well.
+        let (journal, discarded_parts, warning) = found.start(&unfinished, identity)?;
+        // The directory entries of the journal and its directory must survive a power cut too.
         sync_directory(&unfinished).and_then(|()| sync_directory(path)).map_err(refuse)?;
         Ok(Self {
             path: path.to_owned(),
@@ -66,13 +66,13 @@ impl Directory {
             identity: identity.clone(),
             is_ours: Box::new(is_ours),
             parts: Mutex::default(),
-            thrown_away,
+            discarded_parts,
             warning,
             _lock: lock,
         })
     }
 
-    /// The directory `name` below this one, for a search that is part of the work.
+    /// The subdirectory `name`, for a search that is part of the work.
     pub fn part(&self, name: &str) -> Result<PathBuf, Error> {
         let part = plain::below(&self.path, name).map_err(|source| self.refused(source))?;
         self.journal.note_part(name);
@@ -80,7 +80,7 @@ impl Directory {
         Ok(part)
     }
 
-    /// The directories below that the work has made results in.
+    /// The subdirectories in which the work has made results.
     pub fn parts(&self) -> BTreeSet<String> {
         self.parts.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
@@ -100,9 +100,9 @@ impl Directory {
         path.join(UNFINISHED).exists()
     }
 
-    /// Removes the lock file that a killed run has left behind.
+    /// Removes the lock file left behind by a killed run.
     pub fn tidy(path: &Path) {
-        drop(Lock::take(path)); // without the right to, it stays, and does no harm
+        drop(Lock::take(path)); // without permission it stays, and does no harm
     }
 
     /// A warning where the journal of the unfinished work was damaged.
@@ -120,9 +120,9 @@ impl Directory {
         &self.journal
     }
 
-    /// Records the value of a point of the grid that was computed elsewhere.
+    /// Records the value of a grid point that was computed elsewhere.
     pub fn know(&mut self, point: usize, value: f64) {
-        self.journal.learn_grid(point, value);
+        self.journal.record_grid_value(point, value);
     }
 
     /// Begins the file `name`.
@@ -169,7 +169,7 @@ impl Directory {
         self.unfinished.join(name)
     }
 
-    /// Discards the unfinished work, because to repeat it would end the same way. Earlier results stay.
+    /// Discards the unfinished work, because repeating it would end the same way. Earlier results stay.
     pub fn discard(&self) {
         let _ = unfinished::remove(&self.unfinished); // what is left of it is cleared by the next run
     }
@@ -201,7 +201,7 @@ impl Directory {
             parts.extend(made.map(|manifest| (name, manifest.study_sha256)));
         }
         if let Some(old) = Manifest::read(&self.path)? {
-            // Files that this run does not replace stay listed: as part of the results if they are of the same work, else as earlier.
+            // Files that this run does not replace stay listed: among the results if they are of the same work, else as earlier files.
             let same = old.identity() == self.identity;
             let whole = old.files.into_iter().map(|(name, sha)| (same, name, sha));
             let rest = old.earlier.into_iter().map(|(name, sha)| (false, name, sha));
@@ -212,10 +212,10 @@ impl Directory {
             }
             if same && self.extent != Extent::Whole {
                 old.parts.into_iter().for_each(|(name, study)| {
-                    parts.entry(name).or_insert(study); // those of the files that stay
+                    parts.entry(name).or_insert(study); // the parts of the files that stay
                 });
             }
-            // The same study from another place is still that of the first.
+            // If the same study is run from another path, the owner remains the first one.
             if same {
                 made_by = old.made_by;
             }
@@ -230,7 +230,7 @@ impl Directory {
         self.write_json(NAME, &manifest)
     }
 
-    /// Adds the new files to the existing manifest: they belong to results that are not changed.
+    /// Adds the new files to the existing manifest, whose results do not change.
     pub fn amend_manifest(&self) -> Result<(), Error> {
         let Some(mut manifest) = Manifest::read(&self.path)? else { return Ok(()) };
         manifest.files.extend(self.new_files()?);
@@ -251,51 +251,52 @@ fn fields(of: &impl Serialize) -> Result<Fields, Error> {
 }
 
 impl Directory {
-    /// Puts the new results into the place of the earlier ones. They are on the disk before an earlier one goes; the journal stays
+    /// Replaces the earlier results by the new ones, which are synced to disk before any earlier file is removed. The journal stays
     /// until [`Self::finish`].
     ///
     /// # Errors
-    /// There is something in their place that may not be replaced, or a file cannot be written, moved or removed.
+    /// An existing file may not be replaced, or a file cannot be written, moved or removed.
     pub fn publish(&self) -> Result<(), Error> {
         self.journal.check()?;
         let new = self.whole()?;
         if new.is_empty() {
-            return Ok(()); // they are in their place already
+            return Ok(()); // already in place
         }
-        // Someone may have put a file there since the work began.
+        // A file may have been put there since the work began.
         self.order
             .may_replace(&self.path, self.extent, &self.identity, |name| new.iter().any(|new| new == name))?;
         self.place(&new).map_err(|source| self.refused(source))
     }
 
-    /// The process may end at any moment, so a manifest that names the old and the new files is written first.
+    /// Moves the new files into place. The process may be killed at any moment, so a manifest that lists both old and new files is
+    /// written first.
     fn place(&self, new: &[String]) -> std::io::Result<()> {
         for name in new {
             File::open(self.unfinished.join(name))?.sync_all()?;
         }
         let old = Manifest::read(&self.path).map_err(std::io::Error::other)?;
-        let mut standing = names(&self.path)?;
-        standing.retain(|name| old.as_ref().is_some_and(|old| old.has_made(&self.path, name)));
-        if let Some(mut between) = Manifest::read(&self.unfinished).map_err(std::io::Error::other)? {
-            for name in &standing {
+        let mut existing = names(&self.path)?;
+        existing.retain(|name| old.as_ref().is_some_and(|old| old.has_made(&self.path, name)));
+        if let Some(mut interim) = Manifest::read(&self.unfinished).map_err(std::io::Error::other)? {
+            for name in &existing {
                 let sha = file_sha256(&self.path.join(name)).map_err(std::io::Error::other)?;
-                between.earlier.insert(name.clone(), sha);
+                interim.earlier.insert(name.clone(), sha);
             }
             let write = || {
                 let mut file = Pending::create(&self.path.join(NAME))?;
-                file.push(&json_text(&between, NAME)?)?;
+                file.push(&json_text(&interim, NAME)?)?;
                 file.finish_on_disk()
             };
             write().map_err(std::io::Error::other)?;
         }
-        standing.retain(|name| self.replaces(name));
+        existing.retain(|name| self.replaces(name));
         if self.order.replace {
             let is_ours = |name: &String| {
                 (self.is_ours)(name) && plain::is_there(&self.path.join(name)).unwrap_or(false)
             };
-            standing.extend(names(&self.path)?.into_iter().filter(is_ours));
+            existing.extend(names(&self.path)?.into_iter().filter(is_ours));
         }
-        let gone: BTreeSet<String> = standing.into_iter().filter(|name| !new.contains(name)).collect();
+        let gone: BTreeSet<String> = existing.into_iter().filter(|name| !new.contains(name)).collect();
         for name in gone {
             std::fs::remove_file(self.path.join(name))?;
         }
@@ -303,7 +304,7 @@ impl Directory {
             self.remove_parts(old.parts.keys(), false)?;
         }
         self.remove_parts(self.journal.parts(), true)?;
-        self.remove_parts(&self.thrown_away, true)?;
+        self.remove_parts(&self.discarded_parts, true)?;
         let (manifest, files): (Vec<&String>, Vec<&String>) = new.iter().partition(|name| *name == NAME);
         for name in files.into_iter().chain(manifest) {
             std::fs::rename(self.unfinished.join(name), self.path.join(name))?;
@@ -311,7 +312,7 @@ impl Directory {
         sync_directory(&self.path)
     }
 
-    /// Removes Retune's files from directories below that are no longer part of the work.
+    /// Removes Retune's files from subdirectories that are no longer part of the work.
     fn remove_parts<'a>(
         &self,
         earlier: impl IntoIterator<Item = &'a String>,
@@ -319,7 +320,7 @@ impl Directory {
     ) -> std::io::Result<()> {
         let now = self.parts();
         for name in earlier.into_iter().filter(|name| !now.contains(*name)) {
-            // A link that was put there since the manifest was read leads to what is not ours.
+            // A symbolic link put there since the manifest was read points to files that are not ours.
             let Ok(part) = plain::below(&self.path, name) else { continue };
             unfinished::remove_results(&part, with_unfinished)?;
             let mut above = Path::new(name).parent();

@@ -7,7 +7,7 @@ use std::hint::black_box;
 /// The version of this program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// Two works of the same identity have the same bytes.
+/// Identifies a result: two runs of the same identity give the same bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
     /// SHA-256 of the resolved study, the bytes of `study.json`, in hexadecimal.
@@ -19,12 +19,12 @@ pub struct Identity {
 }
 
 impl Identity {
-    /// Of a work that is described by `text`.
+    /// The identity of the work that is described by `text`.
     pub fn of(text: &str) -> Self {
         Self { study: sha256(text.as_bytes()), version: VERSION.to_owned(), arithmetic: arithmetic() }
     }
 
-    /// As a word of a header: no spaces.
+    /// As the text of a header.
     pub fn words(&self) -> String {
         format!("study={} version={} arithmetic={}", self.study, self.version, self.arithmetic)
     }
@@ -37,7 +37,7 @@ impl Identity {
         fields.next().is_none().then_some(Self { study, version, arithmetic })
     }
 
-    /// How `other` differs from this, in words; none if it does not.
+    /// Describes how `other` differs; none if it does not.
     pub fn difference(&self, other: &Self) -> Option<String> {
         let short = |hash: &str| hash.chars().take(12).collect::<String>();
         if self.study != other.study {
@@ -76,8 +76,8 @@ pub fn hexadecimal(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The system's sine, cosine and powers are not rounded alike everywhere, and an impacting motion may turn on their last bit.
-/// These digits are the same where they are: machines that differ in them must not share one result.
+/// A checksum of this machine's sine, cosine and power functions. They are rounded differently on different systems, and an
+/// impacting motion may depend on the last bit: machines whose checksums differ must not share a result.
 fn arithmetic() -> String {
     let mut hash = Sha256::new();
     for i in 0..1024 {

@@ -1,16 +1,15 @@
-//! The journal: every value of an objective that was computed, as it is computed, so that nothing of an interrupted run is
-//! lost.
+//! The journal: every computed value of an objective is recorded at once, so that an interrupted run loses nothing.
 //!
-//! Each search is deterministic in the values of its objective. A resumed run therefore starts from the beginning, and the journal
-//! supplies the values that are known: the run reaches the point of interruption at once, and its results are identical to the
-//! byte to those of an uninterrupted run. The searches themselves need not know of the journal.
+//! Each search is deterministic, given the values of its objective. A resumed run therefore starts from the beginning and takes
+//! known values from the journal: it reaches the point of interruption at once, and its results are identical to the byte to those
+//! of an uninterrupted run. The searches themselves need not know of the journal.
 //!
 //! Each line ends with a checksum that is valid for this work alone (see [`Seal`]). A line with a valid checksum is used wherever it
-//! is; any other (a crash may leave half a line, a disk a flipped bit) is counted, reported and computed again. Lines are passed to
-//! the operating system at once, so they survive the process, and to the disk about once a second.
+//! stands; any other (half a line after a crash, a flipped bit) is counted, reported and computed again. Lines are passed to the
+//! operating system at once, so they survive the process, and synced to disk about once a second.
 //!
-//! Values that are not finite (designs that cannot be computed) are written, but not recalled: such a design is run again, so
-//! that the search can report why it failed.
+//! Non-finite values (designs that cannot be computed) are written but not recalled: such a design is run again, so that the search
+//! can report why it failed.
 
 mod read;
 mod record;
@@ -30,7 +29,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-/// Milliseconds between two times that the disk is waited for.
+/// Time between two syncs to disk, ms.
 const SYNC_EVERY: u64 = 1000;
 
 /// A journal that is being written.
@@ -40,13 +39,13 @@ pub struct Journal {
     seal: Seal,
     known: Known,
     file: Mutex<File>,
-    /// The same file, to wait for the disk without holding up those who write.
+    /// A second handle to the same file, to sync it without blocking writers.
     disk: File,
     begun: Instant,
     synced: AtomicU64,
     written: AtomicBool,
     broken: AtomicBool,
-    trouble: Mutex<Option<std::io::Error>>,
+    first_error: Mutex<Option<std::io::Error>>,
 }
 
 impl Journal {
@@ -81,11 +80,11 @@ impl Journal {
             synced: AtomicU64::new(0),
             written: AtomicBool::new(false),
             broken: AtomicBool::new(false),
-            trouble: Mutex::default(),
+            first_error: Mutex::default(),
         })
     }
 
-    /// Whether it has no value and no mark.
+    /// Whether it holds no value and no mark.
     pub fn is_empty(&self) -> bool {
         self.known.lines == 0 && !self.written.load(Relaxed)
     }
@@ -95,20 +94,20 @@ impl Journal {
         self.known.lines
     }
 
-    /// The directories below in which earlier runs of this work began searches.
+    /// The subdirectories in which earlier runs of this work began searches.
     pub fn parts(&self) -> &BTreeSet<String> {
         &self.known.parts
     }
 
-    /// Notes that a search is begun in a directory below.
+    /// Records that a search begins in a subdirectory.
     pub fn note_part(&self, name: &str) {
         if !self.known.parts.contains(name) {
             self.append(&format!("p {name}"));
         }
     }
 
-    /// The value of an objective at `design`: from the journal, and then `recall` is called with it; or computed and recorded.
-    /// `stage` names the objective; `cutoff` is the value at which its evaluation may stop.
+    /// The value of an objective at `design`: taken from the journal and passed to `recall`, or computed and recorded. `stage` names
+    /// the objective; `cutoff` is the value at which its evaluation may stop.
     pub fn value(
         &self,
         stage: &str,
@@ -123,7 +122,7 @@ impl Journal {
         })
     }
 
-    /// The same for a point of the grid, identified by its number.
+    /// Like [`Self::value`], for a grid point identified by its number.
     pub fn grid_value(&self, point: usize, compute: impl FnOnce() -> f64, recall: impl FnOnce(f64)) -> f64 {
         self.answer(self.known.grid.get(point).copied(), compute, recall, |value| grid_text(point, value))
     }
@@ -140,7 +139,7 @@ impl Journal {
                 recall(value);
                 value
             }
-            // A value that cannot be recorded need not be computed: the search ends at once, and `check` reports why.
+            // If values cannot be recorded, none are computed: the search ends at once, and `check` reports why.
             _ if self.broken.load(Relaxed) => f64::INFINITY,
             known => {
                 let value = compute();
@@ -152,8 +151,8 @@ impl Journal {
         }
     }
 
-    /// Records the value of a point of the grid that was computed elsewhere.
-    pub fn learn_grid(&mut self, point: usize, value: f64) {
+    /// Records the value of a grid point that was computed elsewhere.
+    pub fn record_grid_value(&mut self, point: usize, value: f64) {
         if self.known.grid.get(point).is_none_or(|value| value.is_nan())
             && self.known.set_grid(point, value).is_some()
         {
@@ -162,22 +161,22 @@ impl Journal {
         }
     }
 
-    /// Whether a part of the work named `name` is done.
+    /// Whether the part `name` of the work is done.
     pub fn is_marked(&self, name: &str) -> bool {
         self.known.marks.contains(name)
     }
 
-    /// Notes that a part of the work named `name` is done.
+    /// Records that the part `name` of the work is done.
     pub fn mark(&self, name: &str) {
         self.write(&format!("m {name}"));
     }
 
-    /// Checks that everything could be written so far; to be called before the result of a search is used.
+    /// Checks that everything could be written so far. Call it before using the result of a search.
     ///
     /// # Errors
     /// The journal cannot be written, for instance because the disk is full.
     pub fn check(&self) -> Result<(), Error> {
-        match &*self.trouble.lock().unwrap_or_else(PoisonError::into_inner) {
+        match &*self.first_error.lock().unwrap_or_else(PoisonError::into_inner) {
             None => Ok(()),
             Some(source) => Err(Error::Output {
                 path: self.path.clone(),
@@ -191,7 +190,7 @@ impl Journal {
         self.broken.load(Relaxed)
     }
 
-    /// Writes down a result.
+    /// Appends a result.
     fn write(&self, text: &str) {
         self.written.store(true, Relaxed);
         self.append(text);
@@ -206,11 +205,11 @@ impl Journal {
         let now = self.begun.elapsed().as_millis() as u64;
         let last = self.synced.load(Relaxed);
         let due = now >= last + SYNC_EVERY;
-        let mine = due && self.synced.compare_exchange(last, now, Relaxed, Relaxed).is_ok();
-        let synced = written.and_then(|()| if mine { self.disk.sync_data() } else { Ok(()) });
+        let claimed = due && self.synced.compare_exchange(last, now, Relaxed, Relaxed).is_ok();
+        let synced = written.and_then(|()| if claimed { self.disk.sync_data() } else { Ok(()) });
         if let Err(source) = synced {
             self.broken.store(true, Relaxed);
-            self.trouble.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(source);
+            self.first_error.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(source);
         }
     }
 }

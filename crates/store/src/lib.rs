@@ -1,9 +1,9 @@
-//! Results on disk, whatever is computed: a file is there as a whole or not at all, and nothing that another program or person made
-//! is replaced unasked.
+//! Results on disk, independent of what is computed: a file exists completely or not at all, and nothing made by another program or
+//! person is replaced unless asked for.
 //!
 //! A run opens a [`Directory`] for work of an [`Identity`], writes its files, and finishes. The new files are written into the
-//! subdirectory [`UNFINISHED`]; only when all are complete do they take the place of the earlier ones. Every value that the run
-//! computes goes through its [`Journal`] there, so a run that was stopped, killed or cut off can be resumed.
+//! subdirectory [`UNFINISHED`]; only when all are complete do they replace the earlier ones. Every value that the run computes is
+//! recorded in its [`Journal`] there, so a run that was stopped or killed can be resumed.
 //!
 //! ```
 //! use retune_store::{Begin, Directory, Extent, Identity, Order};

@@ -1,5 +1,5 @@
-//! One run at a time in a directory. The system holds the lock for as long as the process lives, so a crash leaves none
-//! behind; the file that it leaves is harmless.
+//! Allows one run at a time in a directory. The system releases the lock when the process ends, so a crash leaves none
+//! behind; a left-over lock file is harmless.
 
 use super::plain;
 use crate::error::Error;
@@ -20,11 +20,11 @@ impl Lock {
     /// Takes the lock of `directory`.
     ///
     /// # Errors
-    /// [`Error::Busy`] where another process holds it; or the file cannot be made.
+    /// [`Error::Busy`] if another process holds it; or the file cannot be created.
     pub fn take(directory: &Path) -> Result<Self, Error> {
         let path = directory.join(NAME);
         let refuse = |source| Error::Output { path: path.clone(), source };
-        // Between opening and locking, the last holder may have removed the file: then it is not the one that others see.
+        // Between opening and locking, the previous holder may have removed the file: the lock is then on a file that no one else sees.
         for attempt in 0_u32.. {
             let mut options = OpenOptions::new();
             options.create(true).truncate(false).write(true);
@@ -56,7 +56,7 @@ impl Lock {
     }
 }
 
-/// Whether this is the content of a lock file: nothing, or the number of a process first.
+/// Whether this is the content of a lock file: empty, or beginning with a process id.
 fn is_ours(text: &[u8]) -> bool {
     text.is_empty()
         || text

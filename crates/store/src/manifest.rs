@@ -24,23 +24,23 @@ pub struct Manifest {
     pub retune: String,
     /// The command and the study file that made them.
     pub made_by: MadeBy,
-    /// SHA-256 of the resolved study, `study.json`; of a result of several studies, of `resolved.json`.
+    /// SHA-256 of the resolved study, `study.json`; with several studies, of `resolved.json`.
     pub study_sha256: String,
     /// A checksum of the machine's sines and powers.
     pub arithmetic: String,
-    /// The integration method and its tolerances; none where studies differ in it, and then each says its own in `resolved.json`.
+    /// The integration method and its tolerances; none if studies differ in them: `resolved.json` then has those of each.
     pub solver: Option<Fields>,
     /// The files, each with its SHA-256.
     pub files: BTreeMap<String, String>,
-    /// Files of an earlier study that are still beside them, with their SHA-256.
+    /// Files of an earlier study that are still in the directory, with their SHA-256.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub earlier: BTreeMap<String, String>,
-    /// Directories below with the results of its searches, each with a manifest of its own, and the SHA-256 of the study that it is of.
+    /// Subdirectories with the results of its searches, each with its own manifest, and the SHA-256 of the study of each.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub parts: BTreeMap<String, String>,
 }
 
-/// The owner of results: a study file remains the same study when it is edited; a file of the same name elsewhere is another one.
+/// The owner of results. An edited study file remains the same owner; a file of the same name elsewhere is another.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MadeBy {
     /// The command.
@@ -60,7 +60,7 @@ impl Manifest {
         Ok(Some(manifest))
     }
 
-    /// Checks that all that the manifest of `place` names is there: files in it, parts below it.
+    /// Checks that every path in the manifest of `place` stays within it: plain names of files, and parts below it.
     pub fn check(&self, place: &Path) -> Result<(), Error> {
         let refuse = |field: &str, problem: &str| Error::Input {
             path: place.join(NAME),

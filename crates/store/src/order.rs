@@ -1,8 +1,7 @@
 //! The owner of the results in a directory, and the rules for replacing them.
 //!
-//! A run may replace what Retune made of the same study file with the same command, however the file was edited since: that is
-//! everyday work. Anything else it is asked to replace in so many words (`--replace`): results of another study, a file that
-//! Retune did not make, or one that was changed after it was made.
+//! A run may replace what the same command made from the same study file, even if that was edited since: that is everyday work. Anything
+//! else is replaced only with `--replace`: results of another study, a file that Retune did not make, or one that was changed afterwards.
 
 use crate::error::Error;
 use crate::identity::Identity;
@@ -10,7 +9,7 @@ use crate::manifest::{MadeBy, Manifest, NAME};
 use crate::plain::{self, names};
 use std::path::{Path, PathBuf};
 
-/// The treatment of unfinished work that is found.
+/// What to do with unfinished work in the directory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Begin {
     /// It is kept, and the run is refused.
@@ -29,9 +28,9 @@ pub struct Order {
     pub command: &'static str,
     /// The study file.
     pub study: PathBuf,
-    /// The treatment of unfinished work.
+    /// What to do with unfinished work.
     pub begin: Begin,
-    /// Whether results of others may be replaced.
+    /// Whether results of another owner may be replaced.
     pub replace: bool,
 }
 
@@ -42,14 +41,14 @@ pub enum Extent {
     Whole,
     /// Some files; the others stay.
     Share,
-    /// Some files, beside the results of whoever made the others.
+    /// Some files, beside results of any other owner.
     Guest,
 }
 
 impl Order {
     /// The owner of the results that this request makes in `place`, which must exist.
     pub fn made_by(&self, place: &Path) -> MadeBy {
-        // A study that is not written yet is that beside the results that will be.
+        // A study file that does not exist yet has no canonical path.
         let full = |path: &Path| {
             path.canonicalize().or_else(|_| std::path::absolute(path)).unwrap_or_else(|_| path.to_owned())
         };
@@ -59,7 +58,7 @@ impl Order {
         MadeBy { command: self.command.to_owned(), study }
     }
 
-    /// Whether a run may put its results, which `is_ours` names, into `place`.
+    /// Checks that a run may put its results, whose names `is_ours` tells, into `place`.
     ///
     /// # Errors
     /// [`Error::Standing`] if there are results that it may not replace; [`Error::Protected`] if its own study file would be replaced;
@@ -72,12 +71,13 @@ impl Order {
         is_ours: impl Fn(&str) -> bool,
     ) -> Result<(), Error> {
         let manifest = Manifest::read(place)?;
-        let by_hand = |name: &String| match &manifest {
+        let is_foreign = |name: &String| match &manifest {
             Some(manifest) => name != NAME && !manifest.has_made(place, name),
             None => true,
         };
         let entries = names(place).map_err(|source| Error::Output { path: place.to_owned(), source })?;
-        let foreign: Vec<String> = entries.into_iter().filter(|name| is_ours(name)).filter(by_hand).collect();
+        let foreign: Vec<String> =
+            entries.into_iter().filter(|name| is_ours(name)).filter(is_foreign).collect();
         if let Some(name) = foreign.iter().find(|name| is_same(&place.join(name), &self.study)) {
             let problem = "it is the study itself, and results of this name would take its place";
             return Err(Error::Protected { path: place.join(name), problem: problem.to_owned() });
@@ -86,9 +86,9 @@ impl Order {
             return Ok(());
         }
         if extent != Extent::Guest
-            && let Some(other) = manifest.as_ref().and_then(|it| self.other(place, identity, it))
+            && let Some(other_owner) = manifest.as_ref().and_then(|it| self.other_owner(place, identity, it))
         {
-            return Err(Error::Standing { path: place.to_owned(), problem: other });
+            return Err(Error::Standing { path: place.to_owned(), problem: other_owner });
         }
         if foreign.is_empty() {
             return Ok(());
@@ -98,8 +98,8 @@ impl Order {
         Err(Error::Standing { path: place.to_owned(), problem })
     }
 
-    /// The owner in words, if the results belong to another study or command.
-    fn other(&self, place: &Path, identity: &Identity, manifest: &Manifest) -> Option<String> {
+    /// Describes the owner if the results belong to another study or command.
+    fn other_owner(&self, place: &Path, identity: &Identity, manifest: &Manifest) -> Option<String> {
         if manifest.identity() == *identity {
             return None;
         }
@@ -108,7 +108,7 @@ impl Order {
             format!(
                 "the directory holds results of `retune {}` for {}",
                 made_by.command,
-                made_by.seen_from_here(place)
+                made_by.study_from_current_dir(place)
             )
         })
     }
@@ -116,15 +116,15 @@ impl Order {
 
 impl MadeBy {
     /// The study file as seen from the working directory.
-    fn seen_from_here(&self, place: &Path) -> String {
+    fn study_from_current_dir(&self, place: &Path) -> String {
         let path = place.join(&self.study);
         let seen = || pathdiff::diff_paths(path.canonicalize().ok()?, std::env::current_dir().ok()?);
         seen().unwrap_or(path).display().to_string()
     }
 }
 
-/// Checks that a file may be written at `path`: an existing one is only replaced if it is a plain file, none of `inputs`, and begins
-/// with `head`, as all such files of Retune do.
+/// Checks that a file may be written at `path`: an existing one may be replaced only if it is a plain file, is none of `inputs`, and
+/// begins with `head`, as all such files of Retune do.
 pub fn may_write(path: &Path, inputs: &[&Path], head: &str) -> Result<(), Error> {
     let protected = |problem: &str| Error::Protected { path: path.to_owned(), problem: problem.to_owned() };
     if inputs.iter().any(|input| is_same(path, input)) {
@@ -145,7 +145,7 @@ pub fn may_write(path: &Path, inputs: &[&Path], head: &str) -> Result<(), Error>
     }
 }
 
-/// Whether both are the same file or directory.
+/// Whether both paths lead to the same existing file or directory.
 pub fn is_same(one: &Path, other: &Path) -> bool {
     let [one, other] = [one, other].map(|path| path.canonicalize().ok());
     one.is_some() && one == other

@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// Removes the temporary files that killed processes have left of the file at `path`. Only whoever holds the lock of the directory may.
+/// Removes temporary files of `path` left by killed processes. The caller must hold the lock of the directory.
 pub fn clear(path: &Path) -> std::io::Result<()> {
     let (Some(directory), Some(name)) = (path.parent(), path.file_name()) else { return Ok(()) };
     let begin = format!(".{}.", name.to_string_lossy());
@@ -20,7 +20,7 @@ pub fn clear(path: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-/// A file that is being written under a temporary name. It vanishes unless it is finished.
+/// A file that is being written under a temporary name. Dropping it unfinished removes it.
 #[derive(Debug)]
 pub struct Pending {
     path: PathBuf,
@@ -56,14 +56,14 @@ impl Pending {
         Ok(())
     }
 
-    /// Gives the file its name once it is on the disk.
+    /// Syncs the file to disk, then gives it its name.
     pub fn finish_on_disk(mut self) -> Result<(), Error> {
         let written = self.file.flush().and_then(|()| self.file.get_ref().sync_all());
         written.map_err(|source| self.refused(source))?;
         self.finish()
     }
 
-    /// Gives the file its name once it is on the disk, and lets nobody write to it any more.
+    /// Syncs the file to disk, makes it read-only, then gives it its name.
     pub fn finish_for_good(mut self) -> Result<(), Error> {
         let settle = |file: &File| {
             let mut permissions = file.metadata()?.permissions();
@@ -86,7 +86,7 @@ impl Pending {
 impl Drop for Pending {
     fn drop(&mut self) {
         if !self.finished {
-            let _ = std::fs::remove_file(&self.temporary); // nothing is left to be done if this fails
+            let _ = std::fs::remove_file(&self.temporary); // nothing more can be done if this fails
         }
     }
 }

@@ -8,7 +8,7 @@ use std::path::{Component, Path, PathBuf};
 /// Opens a plain file to read it.
 ///
 /// # Errors
-/// There is none, it is something else, or it may not be read.
+/// It does not exist, is not a plain file, or may not be read.
 pub fn open(path: &Path) -> Result<File> {
     is_there(path)?;
     without_links(OpenOptions::new().read(true)).open(path)
@@ -21,10 +21,10 @@ pub fn text(path: &Path) -> std::result::Result<String, Refused> {
     read.map(|_| text).map_err(|source| Refused::Input { path: path.to_owned(), source })
 }
 
-/// The path of `name`, which a file says, below `directory`: of plain names, none of them a symbolic link.
+/// The path of `name`, which was read from a file, below `directory`. Its components must be plain names, none of them a symbolic link.
 ///
 /// # Errors
-/// It would lead elsewhere: it is absolute or empty, it has `..`, or a part of it is a symbolic link.
+/// It would lead elsewhere: it is absolute or empty, contains `..`, or a component is a symbolic link.
 pub fn below(directory: &Path, name: &str) -> Result<PathBuf> {
     let elsewhere = |why: &str| Error::new(ErrorKind::InvalidData, format!("`{name}` {why}"));
     let mut path = directory.to_owned();
@@ -47,29 +47,29 @@ pub fn below(directory: &Path, name: &str) -> Result<PathBuf> {
     Ok(path)
 }
 
-/// Opens a plain file with `options`, which may make one.
+/// Opens a plain file with `options`, which may create it.
 ///
 /// # Errors
-/// There is something else of this name, or it may not be opened.
+/// The name belongs to something else, or it may not be opened.
 pub fn open_with(path: &Path, options: &mut OpenOptions) -> Result<File> {
     is_there(path)?;
     without_links(options).open(path)
 }
 
-/// Makes a new file, in place of one that an earlier process left.
+/// Creates a new file, replacing one left by an earlier process.
 pub fn create(path: &Path) -> Result<File> {
     let mut options = OpenOptions::new();
-    options.write(true).create_new(true); // which follows no link
+    options.write(true).create_new(true); // does not follow links
     match options.open(path) {
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {
-            std::fs::remove_file(path)?; // a link itself, not what it points to
+            std::fs::remove_file(path)?; // removes a link, not its target
             options.open(path)
         }
         other => other,
     }
 }
 
-/// Whether a plain file stands there.
+/// Whether a plain file exists at the path.
 pub fn is_there(path: &Path) -> Result<bool> {
     let kind = match path.symlink_metadata() {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(false),
@@ -87,14 +87,14 @@ pub fn is_there(path: &Path) -> Result<bool> {
     Err(Error::other(format!("it is {what}, and Retune follows none: move it away")))
 }
 
-/// What happens between looking and opening must not matter either.
+/// Refuses to open a symbolic link, even one created between the check and the opening.
 #[cfg(unix)]
 fn without_links(options: &mut OpenOptions) -> &mut OpenOptions {
     use std::os::unix::fs::OpenOptionsExt;
     options.custom_flags(libc::O_NOFOLLOW)
 }
 
-/// Elsewhere there is no such flag.
+/// Other systems have no such flag.
 #[cfg(not(unix))]
 fn without_links(options: &mut OpenOptions) -> &mut OpenOptions {
     options
@@ -110,13 +110,13 @@ pub fn names(directory: &Path) -> Result<Vec<String>> {
     Ok(names)
 }
 
-/// Waits until the names in a directory are on the disk.
+/// Waits until the entries of a directory are on disk.
 #[cfg(unix)]
 pub(crate) fn sync_directory(path: &Path) -> Result<()> {
     File::open(path)?.sync_all()
 }
 
-/// Elsewhere a directory cannot be waited for.
+/// Other systems cannot sync a directory.
 #[cfg(not(unix))]
 pub(crate) fn sync_directory(_path: &Path) -> Result<()> {
     Ok(())

@@ -17,43 +17,44 @@ pub const UNFINISHED: &str = "unfinished";
 /// The journal, in [`UNFINISHED`].
 pub const JOURNAL: &str = "journal";
 
-/// The start of a run, after its directory was looked at.
+/// How a run starts, given the unfinished work in its directory.
 #[derive(Debug)]
 pub enum Unfinished {
-    /// It resumes the work with this journal.
+    /// The run resumes the work with this journal.
     Resume(Known, Damage),
-    /// It starts afresh, and discards the work in these directories below.
-    Anew(BTreeSet<String>),
+    /// The run starts afresh and discards the work in these subdirectories.
+    Fresh(BTreeSet<String>),
 }
 
 impl Unfinished {
-    /// Looks for unfinished work in a directory, and whether a run of this identity may resume it.
+    /// Finds unfinished work in a directory and decides whether a run of this identity resumes it.
     ///
     /// # Errors
-    /// There is some and `begin` neither resumes nor discards it, or it is of another work, or its journal cannot be attributed or
+    /// There is some and `begin` neither resumes nor discards it; it is of another work; or its journal cannot be identified or
     /// leads out of the directory.
     pub fn find(place: &Path, begin: Begin, identity: &Identity) -> Result<Self, Error> {
         let unfinished = place.join(UNFINISHED);
         let path = unfinished.join(JOURNAL);
         let refuse = |source| Error::Input { path: path.clone(), source };
         check(&unfinished)?;
-        let (of, known, damage) = match journal::read(&path, identity).map_err(refuse)? {
-            State::Nothing => return Ok(Self::Anew(BTreeSet::new())),
-            State::Unclear(_) if begin == Begin::Restart => return Ok(Self::Anew(BTreeSet::new())),
+        let (found_identity, known, damage) = match journal::read(&path, identity).map_err(refuse)? {
+            State::Nothing => return Ok(Self::Fresh(BTreeSet::new())),
+            State::Unclear(_) if begin == Begin::Restart => return Ok(Self::Fresh(BTreeSet::new())),
             State::Unclear(problem) => return Err(Error::Journal { path, problem }),
-            State::Work(of, known, damage) => (of, *known, damage),
+            State::Work(found_identity, known, damage) => (found_identity, *known, damage),
         };
         for part in &known.parts {
             plain::below(place, part).map_err(refuse)?;
         }
-        let kept = known.lines + known.parts.iter().map(|part| kept(&place.join(part), &of)).sum::<u64>();
+        let kept = known.lines
+            + known.parts.iter().map(|part| kept(&place.join(part), &found_identity)).sum::<u64>();
         if begin == Begin::Restart {
-            return Ok(Self::Anew(known.parts));
+            return Ok(Self::Fresh(known.parts));
         }
-        if kept == 0 && damage.is_none() && of != *identity {
-            return Ok(Self::Anew(known.parts)); // nothing was computed
+        if kept == 0 && damage.is_none() && found_identity != *identity {
+            return Ok(Self::Fresh(known.parts)); // nothing was computed
         }
-        let difference = identity.difference(&of);
+        let difference = identity.difference(&found_identity);
         let is_work = kept > 0 || !damage.is_none();
         if difference.is_some() || begin == Begin::New && is_work {
             let damaged = damage.lines + u64::from(damage.head);
@@ -62,9 +63,9 @@ impl Unfinished {
         Ok(Self::Resume(known, damage))
     }
 
-    /// Starts the run in its directory. Returns the journal, the directories below whose work is discarded, and a warning where the
+    /// Starts the run in its directory. Returns the journal, the subdirectories whose work is discarded, and a warning if the
     /// journal was damaged.
-    pub fn take_up(
+    pub fn start(
         self,
         unfinished: &Path,
         identity: &Identity,
@@ -78,12 +79,12 @@ impl Unfinished {
                 let warning = (!damage.is_none()).then(|| damaged(&path, known.lines, damage));
                 Ok((Journal::resume(&path, identity, known, damage)?, BTreeSet::new(), warning))
             }
-            Self::Anew(parts) => {
+            Self::Fresh(parts) => {
                 clear(unfinished, |name| name == JOURNAL)
                     .and_then(|()| clear(unfinished, |_| false))
                     .map_err(refuse)?;
                 let journal = Journal::begin(&path, identity)?;
-                // A run that is stopped before it has put these away must find them again.
+                // A run stopped before it has removed these must find them again when resumed.
                 parts.iter().for_each(|part| journal.note_part(part));
                 Ok((journal, parts, None))
             }
@@ -106,7 +107,7 @@ fn damaged(path: &Path, kept: u64, Damage { head, lines }: Damage) -> String {
     format!("{}: {words}", path.display())
 }
 
-/// How many results the unfinished work in a directory below holds.
+/// The number of results in the unfinished work of a subdirectory.
 fn kept(place: &Path, identity: &Identity) -> u64 {
     match journal::read(&place.join(UNFINISHED).join(JOURNAL), identity) {
         Ok(State::Work(_, known, _)) => known.lines,
@@ -116,14 +117,14 @@ fn kept(place: &Path, identity: &Identity) -> u64 {
 
 /// Checks that a directory of this name was made by Retune: it has a journal, or nothing but temporary files.
 fn check(unfinished: &Path) -> Result<(), Error> {
-    let standing =
+    let protected =
         |problem: &str| Error::Protected { path: unfinished.to_owned(), problem: problem.to_owned() };
     let refuse = |source| Error::Input { path: unfinished.to_owned(), source };
     match unfinished.symlink_metadata() {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
         Err(error) => return Err(refuse(error)),
         Ok(metadata) if !metadata.is_dir() => {
-            return Err(standing("it is no directory, and Retune keeps its unfinished work there"));
+            return Err(protected("it is no directory, and Retune keeps its unfinished work there"));
         }
         Ok(_) => {}
     }
@@ -132,12 +133,12 @@ fn check(unfinished: &Path) -> Result<(), Error> {
     if names.iter().any(|name| name == JOURNAL) || names.iter().all(is_temporary) {
         return Ok(());
     }
-    Err(standing(
+    Err(protected(
         "it holds files but no journal, so Retune did not make it, and its unfinished work needs this place",
     ))
 }
 
-/// Removes the files in a directory that are not to be kept.
+/// Removes the files in a directory for which `keep` is false.
 fn clear(directory: &Path, keep: impl Fn(&str) -> bool) -> std::io::Result<()> {
     for name in names(directory)?.iter().filter(|name| !keep(name)) {
         std::fs::remove_file(directory.join(name))?;
@@ -145,15 +146,15 @@ fn clear(directory: &Path, keep: impl Fn(&str) -> bool) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Removes unfinished work. Its journal is removed last: without one the directory is not recognised as Retune's.
+/// Removes unfinished work, its journal last: without it the directory is not recognised as Retune's.
 pub fn remove(unfinished: &Path) -> std::io::Result<()> {
     clear(unfinished, |name| name == JOURNAL)?;
     clear(unfinished, |_| false)?;
     std::fs::remove_dir(unfinished)
 }
 
-/// Removes the results that Retune made in a directory, and the directory if nothing else is in it. Everything
-/// stays where there is unfinished work that must not be removed, or where another process is at work.
+/// Removes the results that Retune made in a directory, and the directory if nothing else is in it. Removes nothing if there is
+/// unfinished work that must be kept, or if another process is at work.
 pub fn remove_results(place: &Path, with_unfinished: bool) -> std::io::Result<()> {
     let is_directory = place.symlink_metadata().is_ok_and(|metadata| metadata.is_dir());
     let Some(lock) = is_directory.then(|| Lock::take(place).ok()).flatten() else { return Ok(()) };

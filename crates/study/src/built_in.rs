@@ -6,7 +6,7 @@ use std::path::Path;
 /// The directory in which plans are looked for first.
 pub(super) const PLACE: &str = "studies";
 
-/// Copies of the files in [`PLACE`] of the repository, of which a package knows nothing. A test compares them.
+/// Copies of the files in [`PLACE`] of the repository, which packages do not contain. A test compares them.
 const PLANS: [(&str, &str); 12] = [
     ("table2.json", include_str!("plans/table2.json")),
     ("table2-ssvi.json", include_str!("plans/table2-ssvi.json")),
@@ -22,12 +22,12 @@ const PLANS: [(&str, &str); 12] = [
     ("paper.json", include_str!("plans/paper.json")),
 ];
 
-/// Whether a plan is the one built into this program, because no file of its name is there.
+/// Whether a plan is the one built into this program, because there is no file of its name.
 pub fn is_built_in(path: &Path) -> bool {
     !path.exists() && text(path).is_some()
 }
 
-/// As [`read_text`], for a plan or a study that a plan names: where there is no such file, the one built in.
+/// Like [`read_text`], for a plan or a study that a plan names: uses the one built in if there is no such file.
 pub(super) fn read_plan_text(path: &Path) -> Result<String, StudyError> {
     match text(path) {
         Some(text) if !path.exists() => Ok(text.to_owned()),
@@ -55,7 +55,7 @@ mod tests {
         }
     }
 
-    /// Tests run in the directory of their crate, where there are no studies.
+    /// Tests run in the directory of their crate, where there are no studies, so the built-in copies are read.
     #[test]
     fn contract_every_plan_built_in_is_complete() {
         for name in ["table2", "retune", "fronts"] {

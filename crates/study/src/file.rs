@@ -1,4 +1,4 @@
-//! From a file to the values of its fields, or to one message with the correction.
+//! Parses a file into the values of its fields, or reports one error with its correction.
 
 use super::rule::Rule;
 use super::units;
@@ -48,7 +48,7 @@ pub(super) fn read_text(path: &Path) -> Result<String, StudyError> {
     Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
 }
 
-/// The text with every number in its SI unit, see [`units`]; what is no JSON is refused.
+/// The text with every number converted to its SI unit, see [`units`]. Refuses text that is not JSON.
 pub(super) fn in_si<'a>(text: &'a str, file: &str) -> Result<Cow<'a, str>, StudyError> {
     let whole = typed(text, file)?;
     units::in_si(text, &whole).map_err(|units::Refused { line, column, problem }| StudyError::Field {
@@ -89,7 +89,7 @@ fn refused(file: &str, path: Option<String>, error: &serde_json::Error) -> Study
     }
 }
 
-/// The kind of a study file. What cannot be recognised counts as a study of one damper, whose reader says what is wrong with it.
+/// The kind of a study file. An unrecognised file counts as a study of one damper, whose reader reports what is wrong with it.
 pub fn kind_of(path: &Path) -> Result<Kind, StudyError> {
     let json: Result<Value, _> = serde_json::from_str(&read_text(path)?);
     Ok(json.ok().as_ref().and_then(Kind::of).unwrap_or_default())
@@ -135,7 +135,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Its name, as the field `kind` of a file has it.
+    /// Its name in the field `kind` of a file.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Study => "study",
@@ -165,7 +165,7 @@ impl Kind {
         }
     }
 
-    /// The kind of a JSON object, by its field `kind` or else by its other fields; none of anything else.
+    /// The kind of a JSON object, from its field `kind` or else from its other fields; none for other JSON.
     pub(super) fn of(json: &Value) -> Option<Self> {
         match json.get("kind") {
             Some(kind) => Self::deserialize(kind).ok(),
@@ -195,7 +195,7 @@ pub(super) fn explain(path: Option<&str>, error: &serde_json::Error) -> String {
         }
         Some((name, _)) if message.starts_with("missing field") => {
             let full = field.map_or_else(|| (*name).to_owned(), |parent| format!("{parent}.{name}"));
-            // What the rule says behind the name, where it says more than serde does.
+            // The text after the name, if the rule says more than serde does.
             let rule = message
                 .split_once("`: ")
                 .map_or(", and it has no default".to_owned(), |(_, rule)| format!(": {rule}"));
@@ -233,7 +233,7 @@ fn quoted(message: &str) -> Vec<&str> {
 pub(super) fn suggestion(name: &str, allowed: &[&str]) -> String {
     let typed = name.to_lowercase();
     let slips = |other: &str| strsim::damerau_levenshtein(&typed, &other.to_lowercase());
-    // Of two equally near names the one of the same length: for c3 suggest c2, not C.
+    // Among equally near names prefer one of equal length: for c3 suggest c2, not C.
     let nearest = allowed.iter().min_by_key(|other| (slips(other), other.len().abs_diff(name.len())));
     let meant = match nearest {
         Some(nearest) if slips(nearest) <= 1.max(name.len() / 3) => format!("did you mean `{nearest}`? "),
@@ -242,7 +242,7 @@ pub(super) fn suggestion(name: &str, allowed: &[&str]) -> String {
     format!("; {meant}allowed: {}", allowed.join(", "))
 }
 
-/// Rust's names for what was expected, in words.
+/// Replaces Rust's type names in a message by plain words.
 fn plain(message: &str) -> String {
     let mut text = message.to_owned();
     for (rust, words) in [
@@ -266,7 +266,7 @@ fn plain(message: &str) -> String {
     }
 }
 
-/// serde_json's syntax messages, where they can be more helpful.
+/// Rewrites syntax messages of serde_json that can be made more helpful.
 fn syntax(message: &str) -> String {
     match message {
         "number out of range" => "number out of range: its magnitude must be below 1.8e308".to_owned(),

@@ -64,7 +64,7 @@ impl Default for Margins {
     }
 }
 
-/// Whether a value is the default, which files need not say.
+/// Whether a value is the default, which files may omit.
 pub fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
@@ -163,7 +163,7 @@ impl Coarse {
     }
 }
 
-/// What is left out, as words after those about a grid or a global search.
+/// What is left out, as a phrase that follows the words on a grid or a global search.
 impl std::fmt::Display for Coarse {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         self.rtol.map_or(Ok(()), |rtol| write!(f, ", at rtol {rtol:e}"))?;
@@ -258,7 +258,7 @@ impl Default for Refine {
     }
 }
 
-/// One of the list.
+/// An element of the list `vary`.
 struct Varied(Parameter);
 
 impl<'de> Deserialize<'de> for Varied {
@@ -269,19 +269,19 @@ impl<'de> Deserialize<'de> for Varied {
     }
 }
 
-/// Reads it; a parameter that no search may vary is refused.
+/// Reads the list `vary`; refuses a parameter that no search may vary.
 fn read_varied<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Parameter>, D::Error> {
     Ok(Vec::<Varied>::deserialize(deserializer)?.into_iter().map(|Varied(parameter)| parameter).collect())
 }
 
-/// Its schema: symbols, each with its description.
+/// The schema of `vary`: symbols, each with its description.
 fn varied_schema(_: &mut SchemaGenerator) -> Schema {
     let one = |parameter: Parameter| json_schema!({ "type": "string", "const": parameter.symbol(), "description": parameter.sentence() });
     json_schema!({ "type": "array", "minItems": 1, "items": { "oneOf": Parameter::VARIED.map(one) } })
 }
 
-/// Definitions whose numbers may be texts, by their names or what these begin with. Numbers without a unit are of other types, or their texts
-/// are refused by the reader.
+/// Definitions whose numbers may be given as texts with a unit, by name or prefix of the name. Numbers without a unit have other types, or
+/// the reader refuses a text.
 const NUMBERS: [&str; 9] = [
     "Positive",
     "NonNegative",
@@ -294,7 +294,7 @@ const NUMBERS: [&str; 9] = [
     "PerVariable_",
 ];
 
-/// A number in quotes is a slip.
+/// A text must contain more than a number: a number in quotes is a mistake.
 const MORE_THAN_A_NUMBER: &str = "[^-+.0-9eE ]";
 
 /// The schema of a kind of file.
@@ -310,7 +310,7 @@ pub fn schema<T: JsonSchema>() -> Schema {
     schema
 }
 
-/// Lets a text stand in the place of each number. Keywords on the size of numbers say nothing of texts.
+/// Allows a text in place of each number. Keywords that limit numbers do not apply to texts.
 fn widen(schema: &mut Value) {
     match schema {
         Value::Object(keywords) => {

@@ -80,7 +80,7 @@ pub enum Sweep {
     ContactForce,
 }
 
-/// The studies of a file, with all that it says about them.
+/// A file of fronts with the studies that it names.
 #[derive(Clone, Debug)]
 pub struct FrontsPlan {
     /// The file.
@@ -99,7 +99,7 @@ fn samples() -> usize {
     61
 }
 
-/// Rounds that no front has needed so far.
+/// Default maximum number of rounds: more than any front has needed so far.
 const MOST_ROUNDS: usize = 24;
 
 fn rounds() -> usize {
@@ -118,7 +118,7 @@ impl Sweep {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::K2, Self::Stroke, Self::ContactForce];
 
-    /// Its name in studies and of its table.
+    /// Its name in studies and in the name of its table.
     pub const fn name(self) -> &'static str {
         match self {
             Self::K2 => Parameter::K2.symbol(),
@@ -136,7 +136,7 @@ impl Sweep {
         }
     }
 
-    /// The limit that it bounds; none of k2, which is bounded in the search itself.
+    /// The limit that it sets; none for k2, which is bounded in the search itself.
     pub const fn limit(self) -> Option<Limit> {
         match self {
             Self::K2 => None,
@@ -147,7 +147,7 @@ impl Sweep {
 }
 
 impl FrontsPlan {
-    /// The values of a bound, smallest first, each once.
+    /// The values of a bound, ascending, without duplicates.
     pub fn values(&self, sweep: Sweep) -> Vec<f64> {
         let given = match sweep {
             Sweep::K2 => &self.said.k2,
@@ -165,13 +165,13 @@ impl FrontsPlan {
         Sweep::ALL.into_iter().filter(|sweep| !self.values(*sweep).is_empty()).collect()
     }
 
-    /// Number of samples of the second evaluation.
+    /// Number of band samples of the second evaluation.
     pub fn check(&self) -> usize {
         self.said.check.unwrap_or(self.said.samples)
     }
 }
 
-/// The study of a damper under a bound, which `starts` have to keep.
+/// The study of a damper under a bound; `starts` must satisfy it.
 ///
 /// # Errors
 /// The first [`Rule`] that is broken.
@@ -202,7 +202,7 @@ pub fn bounded(
     Ok(study)
 }
 
-/// A design of the damper of a study, which lends what is left out; or a value that it cannot have.
+/// A design from `said`, completed from the damper of the study; the error is a value that it cannot have.
 fn known(study: &Study, said: &PerVariable<f64>) -> Result<Design, (Parameter, f64)> {
     let own = |parameter: Parameter| parameter.of(&study.scene);
     let foreign =
@@ -214,7 +214,7 @@ fn known(study: &Study, said: &PerVariable<f64>) -> Result<Design, (Parameter, f
     }
 }
 
-/// Reads a file of fronts and the studies that it names, and checks that each can be tuned under each bound.
+/// Reads a file of fronts with the studies that it names, and checks that each can be tuned under each bound.
 ///
 /// # Errors
 /// [`StudyError`], of the file or of a study that it names.

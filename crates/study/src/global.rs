@@ -1,4 +1,4 @@
-//! The global search of a study: an even look at the whole box, then CMA-ES from the best places.
+//! The global search of a study: samples spread evenly over the box, then CMA-ES from the best of them.
 
 use super::rule::Rule;
 use retune_model::PerVariable;
@@ -61,7 +61,7 @@ impl Default for GlobalSearch {
 }
 
 impl GlobalSearch {
-    /// The search as it is made.
+    /// The settings of the search.
     pub fn global(&self) -> Global {
         let Self { samples, searches, apart, spread, tolerance, evaluations, seed, .. } = *self;
         Global { samples, searches, apart, spread, tolerance, evaluations, seed }

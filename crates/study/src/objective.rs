@@ -14,7 +14,7 @@ pub(super) const MOST_SAMPLES: usize = 10_000;
 /// Most starts at a frequency.
 const MOST_STARTS: usize = 1000;
 
-/// Checks the rules that serde cannot; `path` is that of this objective in the study.
+/// Checks the rules that serde cannot; `path` is the path of this objective in the study.
 pub(super) fn check(objective: &Objective, path: &str, scene: &Scene) -> Result<(), Rule> {
     let forcing = &scene.forcing;
     let omega = forcing.frequency.get();
@@ -126,7 +126,7 @@ pub(super) fn check(objective: &Objective, path: &str, scene: &Scene) -> Result<
     }
 }
 
-/// A stationary random motion has root mean squares, which are those of a linear system under a spectrum.
+/// Rules of a stationary random motion: only root mean squares, of a linear system under a spectrum.
 fn check_stationary(objective: &Objective, path: &str, scene: &Scene) -> Result<(), Rule> {
     let bad = |name: &str, value: &str, allowed| {
         Err(Rule::not_allowed(format!("{path}.{name}"), value.to_owned(), allowed))
@@ -171,7 +171,7 @@ fn check_stationary(objective: &Objective, path: &str, scene: &Scene) -> Result<
     Ok(())
 }
 
-/// Records stand in the place of one.
+/// Rules of an objective over several records: they replace the record of the scene.
 fn check_records(objective: &Objective, path: &str, own: &Forcing) -> Result<(), Rule> {
     let bad = |field: String, value: String, allowed| Err(Rule::not_allowed(field, value, allowed));
     if objective.records.is_empty() {
@@ -199,7 +199,7 @@ fn check_records(objective: &Objective, path: &str, own: &Forcing) -> Result<(),
     }
 }
 
-/// Refuses a study that makes another quantity than E1max small, for tables that hold energies.
+/// Refuses a study that minimises another quantity than E1max, for tables that hold energies.
 pub(super) fn check_quantity(study: &Study) -> Result<(), Rule> {
     match study.quantity() {
         Measure::Energy => Ok(()),
@@ -255,7 +255,7 @@ impl Study {
         self.optimize.as_ref().map(|optimize| optimize.objective.clone()).unwrap_or_default()
     }
 
-    /// What its search makes small.
+    /// The quantity that its search minimises.
     pub fn quantity(&self) -> Measure {
         self.objective().quantity()
     }
@@ -271,12 +271,12 @@ impl Study {
         self.optimize.as_ref().map(|optimize| optimize.coarse).unwrap_or_default()
     }
 
-    /// The value of its structure without a damper by its objective; NaN where it has none, infinite where it has no bound.
+    /// The objective for its structure without a damper; NaN if it has no value, infinite if it is unbounded.
     pub fn energy_without_damper(&self) -> f64 {
         self.energy(&Scene { damper: None, ..self.scene }).unwrap_or(f64::NAN)
     }
 
-    /// The value of a scene by its objective, regardless of the limits, in the unit of its quantity; `None` if it cannot be run.
+    /// The objective for a scene, regardless of the limits, in the unit of its quantity; `None` if it cannot be run.
     pub fn energy(&self, scene: &Scene) -> Option<f64> {
         Some(self.goal().evaluate(scene, &self.solver.settings(), f64::INFINITY).ok()?.value)
     }

@@ -1,4 +1,4 @@
-//! From a file, or the results of a search, to a checked study.
+//! Reads a file, or the results of a search, into a checked study.
 
 use super::built_in::{is_built_in, read_plan_text};
 use super::file::{Kind, StudyError, expect, in_si, parse, read_text};
@@ -23,8 +23,8 @@ pub fn read_paper<T: DeserializeOwned + Serialize>(path: &Path) -> Result<T, Stu
     parse(&text, &file)
 }
 
-/// Reads and checks a study, whose name is filled in from that of the file. The directory of a search's results, or its
-/// `optimum.json`, stands for the study with the design that was found in its scene.
+/// Reads and checks a study; its name defaults to that of the file. For the directory of a search's results, or its
+/// `optimum.json`, returns the study with the design found in its scene.
 ///
 /// # Errors
 /// [`StudyError`]: the file, the field, its value and the allowed values.
@@ -39,7 +39,7 @@ pub fn read(path: &Path) -> Result<Study, StudyError> {
     let study = from_text(&read_text(&file)?, &file.display().to_string())?;
     let optimum = if path.is_dir() { place.join(OPTIMUM) } else { path.to_owned() };
     if !optimum.exists() {
-        return Ok(study); // of a certificate: the design is that of the study
+        return Ok(study); // results of a certificate: the study holds the design
     }
     let found = design(&read_text(&optimum)?, &optimum.display().to_string())?;
     match study.scene_at(&found) {
@@ -48,7 +48,7 @@ pub fn read(path: &Path) -> Result<Study, StudyError> {
     }
 }
 
-/// Reads a study that a plan names, which may be built in, as [`read`] does.
+/// Like [`read`], for a study that a plan names, which may be built in.
 pub(super) fn named(path: &Path) -> Result<Study, StudyError> {
     if is_built_in(path) {
         from_text(&read_plan_text(path)?, &path.display().to_string())
@@ -57,7 +57,7 @@ pub(super) fn named(path: &Path) -> Result<Study, StudyError> {
     }
 }
 
-/// The directory of the results that a path names: itself, or that of the `optimum.json` that it is; none of a study file.
+/// The directory of results that a path names: the path itself, or the directory of an `optimum.json`; none for a study file.
 pub fn found_in(path: &Path) -> Result<Option<PathBuf>, StudyError> {
     if path.is_dir() {
         return Ok(Some(path.to_owned()));
@@ -80,7 +80,7 @@ fn design(text: &str, file: &str) -> Result<Design, StudyError> {
             "a number not below 0: the design that `retune optimize` found",
         ),
     };
-    // Both gaps are there, or, of a damper without walls, neither.
+    // Either both gaps are given, or neither (a damper without walls).
     let gaps = [Parameter::D, Parameter::C];
     let walled = gaps.iter().any(|gap| found.get(gap.symbol()).is_some());
     match gaps.into_iter().find(|gap| walled && value(*gap).is_nan()) {
@@ -89,7 +89,7 @@ fn design(text: &str, file: &str) -> Result<Design, StudyError> {
     }
 }
 
-/// Checks the text of a study file as [`read`] does.
+/// Like [`read`], for the text of a study file.
 pub fn from_text(text: &str, file: &str) -> Result<Study, StudyError> {
     expect(Kind::Study, text, file)?;
     let base = Path::new(file).parent().unwrap_or(Path::new(""));
@@ -108,26 +108,26 @@ pub fn from_text(text: &str, file: &str) -> Result<Study, StudyError> {
 pub const OPTIMUM: &str = "optimum.json";
 /// The study of results.
 pub const STUDY: &str = "study.json";
-/// The file in the place of [`STUDY`] where there are several.
-const SEVERAL: &str = "resolved.json";
-/// How many names of files are told.
-const TOLD: usize = 5;
+/// The file that replaces [`STUDY`] if there are several studies.
+const RESOLVED: &str = "resolved.json";
+/// Most file names listed in a message.
+const MAX_LISTED: usize = 5;
 
-/// Why a directory without a study is not read as one.
+/// The error for a directory that holds no study.
 pub fn instead(path: &Path) -> StudyError {
     let names = match names(path) {
         Ok(names) => names,
         Err(source) => return StudyError::Unreadable { file: path.display().to_string(), source },
     };
-    let one = first_study(path, &names).or_else(|| first_below(path, &names));
+    let one = first_study(path, &names).or_else(|| first_subdirectory(path, &names));
     let (file, one) = (path.display().to_string(), one.map(|one| one.display().to_string()));
-    if names.iter().any(|name| name == SEVERAL) {
+    if names.iter().any(|name| name == RESOLVED) {
         return StudyError::Several { file, one };
     }
-    StudyError::NoResults { file, found: told(&names), one }
+    StudyError::NoResults { file, found: listed(&names), one }
 }
 
-/// The names in a directory, sorted; those of directories end in a slash.
+/// The names in a directory, sorted; directories end in a slash.
 fn names(path: &Path) -> std::io::Result<Vec<String>> {
     let mut names = Vec::new();
     for entry in std::fs::read_dir(path)? {
@@ -139,12 +139,16 @@ fn names(path: &Path) -> std::io::Result<Vec<String>> {
     Ok(names)
 }
 
-/// The names in words.
-fn told(names: &[String]) -> String {
+/// Lists the names in a sentence.
+fn listed(names: &[String]) -> String {
     match names.len() {
         0 => "nothing".to_owned(),
-        count if count > TOLD => {
-            format!("{} and {}", joined(&names[..TOLD], ", "), counted((count - TOLD) as u64, "other"))
+        count if count > MAX_LISTED => {
+            format!(
+                "{} and {}",
+                joined(&names[..MAX_LISTED], ", "),
+                counted((count - MAX_LISTED) as u64, "other")
+            )
         }
         _ => joined(names, ", "),
     }
@@ -159,15 +163,15 @@ fn first_study(path: &Path, names: &[String]) -> Option<PathBuf> {
     names.iter().filter(|name| name.ends_with(".json")).map(|name| path.join(name)).find(is_study)
 }
 
-/// The first directory below with the results of a search.
-fn first_below(path: &Path, names: &[String]) -> Option<PathBuf> {
+/// The first directory at any depth below `path` with the results of a search.
+fn first_subdirectory(path: &Path, names: &[String]) -> Option<PathBuf> {
     let inner: Vec<PathBuf> =
         names.iter().filter_map(|name| Some(path.join(name.strip_suffix('/')?))).collect();
     let below = |inner: &PathBuf| {
         if inner.join(OPTIMUM).exists() {
             return Some(inner.clone());
         }
-        first_below(inner, &names_of(inner))
+        first_subdirectory(inner, &names_of(inner))
     };
     inner.iter().find_map(below)
 }

@@ -12,13 +12,13 @@ pub(super) fn read(scene: &mut Scene, base: &Path) -> Result<(), Rule> {
     read_forcing(&mut scene.forcing, false, base)
 }
 
-/// Reads all records of a study, as [`read`] does.
+/// Like [`read`], for all records of a study.
 pub(super) fn read_all(study: &mut Study, base: &Path) -> Result<(), Rule> {
     read(&mut study.scene, base)?;
     each(study, &mut |forcing| read_forcing(forcing, true, base))
 }
 
-/// The same for each record of the objective of a study, until one fails.
+/// Applies `change` to each record of the objective of a study, until one fails.
 pub(super) fn each<E>(
     study: &mut Study,
     change: &mut impl FnMut(&mut Forcing) -> Result<(), E>,
@@ -69,7 +69,7 @@ fn samples(of: Of, source: &RecordFile, file: impl Read + Seek) -> Result<Sample
     if is_at2 { at2(of, source, Lines::of(file)) } else { csv(of, source, file) }
 }
 
-/// Reads the record of a forcing, if it names a file with one, from the text of that file. A study is then written with its samples.
+/// Reads the record of a forcing, if it names a file with one, from that file's text. The study then contains the samples.
 ///
 /// # Errors
 /// The text holds no record: the line, and what is wrong with it.
@@ -91,7 +91,7 @@ impl<R: Read> Lines<R> {
         Self { file: BufReader::new(file), line: String::new(), number: 0 }
     }
 
-    /// The next line with something on it.
+    /// The next non-blank line.
     fn next(&mut self) -> Result<Option<&str>, String> {
         loop {
             self.line.clear();
@@ -106,18 +106,22 @@ impl<R: Read> Lines<R> {
     }
 }
 
-/// By how much the numbers of a file are multiplied.
+/// The factor from the numbers of a file to the unit of the record.
 fn factor(source: &RecordFile, own: Unit) -> f64 {
     let (_, size) = source.unit.unwrap_or(own);
     size * source.scale.map_or(1.0, |scale| scale.get())
 }
 
-/// CSV: a header, the time in the first column. Times are kept only where they are not equidistant: the file is then read once more.
+/// Reads CSV with a header and the time in the first column. Times are stored only if they are not equidistant: the file is then
+/// read a second time.
 fn csv(of: Of, source: &RecordFile, mut file: impl Read + Seek) -> Result<Samples, String> {
     let factor = factor(source, of.units()[0]);
-    let mark = separator(&mut file)?;
-    let mut table =
-        csv::ReaderBuilder::new().delimiter(mark).flexible(true).trim(csv::Trim::Headers).from_reader(file);
+    let delimiter = separator(&mut file)?;
+    let mut table = csv::ReaderBuilder::new()
+        .delimiter(delimiter)
+        .flexible(true)
+        .trim(csv::Trim::Headers)
+        .from_reader(file);
     let names = table.headers().map_err(|error| error.to_string())?.clone();
     if names.iter().all(|name| name.parse::<f64>().is_ok()) {
         return Err("line 1: is no header: give the names of its columns, the time first".to_owned());
@@ -147,28 +151,28 @@ fn csv(of: Of, source: &RecordFile, mut file: impl Read + Seek) -> Result<Sample
     samples.and_then(|samples| samples.times(factor)).map_err(|bad| bad.to_string())
 }
 
-/// Units of time that are not s, as headers name them.
+/// Units of time other than s, as spelled in headers.
 const NOT_SECONDS: [&str; 5] = ["ms", "msec", "us", "µs", "min"];
 
-/// Refuses a header that names other units than those in which its columns are read.
+/// Refuses a header whose units differ from those in which the columns are read.
 fn units_of(names: &csv::StringRecord, place: usize, of: Of, source: &RecordFile) -> Result<(), String> {
     // `a (g)`, `t [ms]`
-    fn told(name: &str) -> Option<&str> {
+    fn unit_in(name: &str) -> Option<&str> {
         let (_, unit) = name.strip_suffix([')', ']'])?.rsplit_once(['(', '['])?;
         Some(unit.trim())
     }
-    if let Some(unit) = told(&names[0]).filter(|unit| NOT_SECONDS.contains(unit)) {
+    if let Some(unit) = unit_in(&names[0]).filter(|unit| NOT_SECONDS.contains(unit)) {
         return Err(format!("line 1: \"{}\" is in {unit}: give times in s", &names[0]));
     }
     let (name, own) = (&names[place], of.units()[0]);
-    let known = told(name).and_then(|text| unit::named(text, of.units()));
+    let known = unit_in(name).and_then(|text| unit::named(text, of.units()));
     match known.filter(|unit| source.unit.is_none() && unit.1 != own.1) {
         None => Ok(()),
         Some((unit, _)) => Err(format!("line 1: \"{name}\" is in {unit}: say so, \"unit\": \"{unit}\"")),
     }
 }
 
-/// Passes on the time and the value of each row, until one is not wanted; whether all are.
+/// Passes the time and the value of each row to `each`, until it returns false; returns whether all rows were passed.
 fn rows(
     table: &mut csv::Reader<impl Read>,
     place: usize,
@@ -188,13 +192,13 @@ fn rows(
     Ok(true)
 }
 
-/// What separates the columns of a file, by its first line; the file is then at its beginning again.
+/// The column delimiter, guessed from the first line. Rewinds the file.
 fn separator(file: &mut (impl Read + Seek)) -> Result<u8, String> {
     let mut lines = Lines::of(&mut *file);
     let head = lines.next()?.ok_or("is empty")?;
-    let mark = [',', ';', '\t'].into_iter().find(|mark| head.contains(*mark)).unwrap_or(',');
+    let delimiter = [',', ';', '\t'].into_iter().find(|delimiter| head.contains(*delimiter)).unwrap_or(',');
     file.rewind().map_err(|error| format!("cannot be read: {error}"))?;
-    Ok(mark as u8)
+    Ok(delimiter as u8)
 }
 
 /// The index of the column of the values.
@@ -225,7 +229,7 @@ fn column(wanted: Option<&Column>, names: &csv::StringRecord) -> Result<usize, S
     })
 }
 
-/// PEER's AT2: accelerations in g after a head of four lines, the last of which tells their number and their distance.
+/// Reads PEER's AT2: accelerations in g after a header of four lines, the last of which gives the number of samples and their spacing.
 fn at2(of: Of, source: &RecordFile, mut lines: Lines<impl Read>) -> Result<Samples, String> {
     if of != Of::BaseAcceleration {
         return Err("an AT2 file holds accelerations: give \"of\": \"base acceleration\"".to_owned());
@@ -259,7 +263,7 @@ fn at2(of: Of, source: &RecordFile, mut lines: Lines<impl Read>) -> Result<Sampl
     Samples::every(0.0, step, values).and_then(|samples| samples.times(factor)).map_err(|bad| bad.to_string())
 }
 
-/// Number and distance of the samples, s: `NPTS= 4000, DT= .0050 SEC`, or as older files have it `4000 .0050 NPTS, DT`.
+/// Number and spacing (s) of the samples: `NPTS= 4000, DT= .0050 SEC`, or in older files `4000 .0050 NPTS, DT`.
 fn spacing(line: &str) -> Option<(usize, f64)> {
     let upper = line.to_uppercase();
     if !(upper.contains("NPTS") && upper.contains("DT")) {
@@ -323,7 +327,7 @@ mod tests {
             assert_eq!(found.even(), Some([0.0, 0.005]));
             assert_eq!(found.value(1), 9.80665 * -0.02);
         }
-        // Seconds that were rounded to decimals are equidistant all the same.
+        // Times rounded to decimals count as equidistant.
         let text: String = (0..500).map(|i| format!("{:.3},{i}\n", 0.005 * f64::from(i))).collect();
         let found = samples("e.csv", &format!("t,a\n{text}"), none).expect("a record");
         assert!(found.even().is_some_and(|[_, step]| (step - 0.005).abs() < 1e-15));

@@ -58,7 +58,7 @@ pub enum Rule {
 }
 
 impl Rule {
-    /// That a field has a value that is not allowed, with those that are.
+    /// The rule that a field has a value that is not allowed, with the allowed values.
     pub fn not_allowed(field: impl Into<String>, value: impl ToString, allowed: &'static str) -> Self {
         Self::NotAllowed { field: field.into(), value: value.to_string(), allowed }
     }

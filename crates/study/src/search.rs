@@ -1,4 +1,4 @@
-//! From a study to its search; the rules between its fields.
+//! Derives the search of a study; checks the rules between its fields.
 
 use super::format::{GridAxis, Margins, Optimize, Solver, Study};
 use super::global::GlobalSearch;
@@ -13,19 +13,19 @@ use std::convert::Infallible;
 /// Most points of a grid: at a tenth of a millisecond each, a quarter of an hour.
 pub const MOST_GRID_POINTS: usize = 10_000_000;
 
-/// What a tolerance may be.
+/// The allowed values of a tolerance.
 const FINITE: &str = "a finite number not below 0";
 
 /// A search and its settings.
 #[derive(Clone, Debug)]
 pub struct Search {
-    /// The damper that the search starts from; parameters that are not tuned keep these values.
+    /// The damper of the scene, where the search starts; parameters that are not tuned keep its values.
     pub damper: Damper,
     /// The tuned parameters, in the order of the paper's tables.
     pub variables: Vec<Parameter>,
     /// The coarse grid and its parameters, if any.
     pub surf: Option<(Vec<Parameter>, Grid)>,
-    /// Number of points of the grid from which refinements start.
+    /// Number of grid points from which refinements start.
     pub starts: usize,
     /// Least number of grid steps between any two starts.
     pub apart: usize,
@@ -38,14 +38,14 @@ pub struct Search {
 }
 
 impl Search {
-    /// The damper that it starts from as a design: the value of each of [`Self::variables`], in SI units.
+    /// The values of [`Self::variables`] in [`Self::damper`], in SI units.
     pub fn own(&self) -> Vec<f64> {
         self.variables.iter().map(|variable| variable.get(&self.damper)).collect()
     }
 }
 
 /// The largest gap, m.
-const FARTHEST: f64 = 1e6;
+const MAX_GAP: f64 = 1e6;
 
 impl Study {
     /// Checks the rules between the fields.
@@ -86,7 +86,7 @@ impl Study {
             return Err(Rule::not_allowed("scene.forcing.omega", 0.0, allowed));
         }
         for gap in [Parameter::D, Parameter::C] {
-            if let Some(value) = gap.of(&self.scene).filter(|gap| *gap > FARTHEST) {
+            if let Some(value) = gap.of(&self.scene).filter(|gap| *gap > MAX_GAP) {
                 let allowed = "at most 1e6 m, beyond which rounding loses the motion; or leave `contact` out: then there is no wall";
                 return Err(Rule::not_allowed(format!("scene.damper.{gap}"), value, allowed));
             }
@@ -97,12 +97,12 @@ impl Study {
         if self.optimize.is_some() { self.search().map(drop) } else { Ok(()) }
     }
 
-    /// The parameters that its search varies; none without one.
+    /// The parameters that its search varies; empty without a search.
     pub fn varied(&self) -> &[Parameter] {
         self.optimize.as_ref().map_or(&[], |optimize| &optimize.vary)
     }
 
-    /// The name; empty if none was given and the study came from no file.
+    /// The name; empty if none was given and the study was not read from a file.
     pub fn name(&self) -> &str {
         self.name.as_deref().unwrap_or_default()
     }
@@ -171,7 +171,7 @@ impl Study {
         Ok(Search { damper, variables, surf, starts, apart, global, given, options })
     }
 
-    /// The same study with the samples of its record, which needs no other file.
+    /// The study with the samples of its records included, so that it needs no other file.
     #[must_use]
     pub fn whole(&self) -> Self {
         let mut study = self.clone();
@@ -186,7 +186,7 @@ impl Study {
         study
     }
 
-    /// The same study with every default written out, the samples of a record in it, and the version that did it.
+    /// The study with every default written out, the samples of its records included, and this version of Retune.
     pub fn resolved(&self) -> Self {
         let mut study = self.whole();
         study.schema = None;
@@ -217,7 +217,7 @@ fn varied(vary: &[Parameter]) -> Result<Vec<Parameter>, Rule> {
     }
 }
 
-/// A start given in the study; omitted parameters are those of the damper.
+/// A start given in the study; omitted parameters are taken from the damper.
 fn given_start(
     i: usize,
     start: &PerVariable<f64>,
@@ -289,7 +289,7 @@ fn options(optimize: &Optimize, bounds: Vec<Bounds>) -> Result<Options, Rule> {
     })
 }
 
-/// A design moved into the bounds of a search.
+/// A design clipped to the bounds of a search.
 pub fn clipped(at: &Design, optimize: &Optimize) -> PerVariable<f64> {
     let mut start = PerVariable::default();
     for &variable in &optimize.vary {
@@ -305,7 +305,7 @@ fn is_plain(c: char) -> bool {
     c.is_alphanumeric() || matches!(c, '-' | '_' | '.')
 }
 
-/// The name of results from that of a file, which may be any: `My study` gives `My-study`.
+/// A valid name of results from any file name: `My study` gives `My-study`.
 pub fn name_from(stem: &str) -> String {
     let name: String = stem.chars().map(|c| if is_plain(c) { c } else { '-' }).collect();
     let name = name.trim_start_matches('.');

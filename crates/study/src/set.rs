@@ -9,12 +9,12 @@ use retune_model::{
 use std::str::FromStr;
 use thiserror::Error;
 
-/// A number of a study that may be set: one of its scene or of its window.
+/// A number of the scene or window of a study that may be set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Settable {
     /// A parameter of the scene.
     Scene(Parameter),
-    /// t0, from where maxima are taken, s.
+    /// t0, from when maxima are taken, s.
     From,
     /// T, the end of a run, s.
     To,
@@ -127,7 +127,7 @@ impl FromStr for Setting {
 }
 
 impl Study {
-    /// The same study with `settings` applied, first to last, and checked like a file.
+    /// The study with `settings` applied in order, and checked like a file.
     ///
     /// # Errors
     /// The first setting that is refused, or the [`Rule`] that the changed study breaks.
@@ -138,7 +138,7 @@ impl Study {
         Ok(study)
     }
 
-    /// The scene with `settings` applied, first to last. Bounds and other rules of the search are not checked.
+    /// The scene with `settings` applied in order. Bounds and other rules of the search are not checked.
     ///
     /// # Errors
     /// The first setting that is refused.
@@ -153,7 +153,7 @@ impl Study {
         Some(Scene { damper: Some(design.on(self.scene.damper?)), ..self.scene })
     }
 
-    /// The number that a setting would change; `None` of a parameter that the scene does not have.
+    /// The number that a setting would change; `None` if the scene does not have it.
     pub fn value_of(&self, what: impl Into<Settable>) -> Option<f64> {
         match what.into() {
             Settable::Scene(parameter) => parameter.of(&self.scene),
@@ -177,7 +177,7 @@ impl Study {
     }
 }
 
-/// A state at t = 0 from `x1,v1,x2,v2` (m, m/s), or from `x1,v1`, where the damper's spring is at rest.
+/// Parses a state at t = 0 from `x1,v1,x2,v2` (m, m/s), or from `x1,v1` with the damper's spring at rest.
 pub fn start(text: &str) -> Result<Start, SettingError> {
     let refused = || SettingError::Start { text: text.to_owned() };
     let number = |text: &str| text.trim().parse().ok().and_then(|value| Finite::new(value).ok());
@@ -190,7 +190,7 @@ pub fn start(text: &str) -> Result<Start, SettingError> {
 }
 
 impl Study {
-    /// The same study whose runs begin at a state (m, m/s), checked like a file but for its search, which begins at rest.
+    /// The study with runs that begin at a state (m, m/s), checked like a file except for its search, which begins at rest.
     ///
     /// # Errors
     /// The [`Rule`] that it breaks.
@@ -200,7 +200,7 @@ impl Study {
         Ok(self)
     }
 
-    /// Refuses a scene whose forced motion does not begin at rest, for whoever compares with runs from rest.
+    /// Refuses a scene whose forced motion does not begin at rest, for callers that compare with runs from rest.
     pub fn begins_at_rest(&self) -> Result<(), Rule> {
         match self.scene.forcing.start {
             None => Ok(()),

@@ -1,4 +1,4 @@
-//! The study behind Table 2: each damper's own study, beside the design the paper gives for it.
+//! The study behind Table 2: a study for each damper, and the design that the paper gives for it.
 
 use super::built_in::{PLACE, read_plan_text, text};
 use super::file::{Kind, StudyError, expect, parse};
@@ -73,7 +73,7 @@ pub struct PaperStudy {
     pub damper: String,
     /// The study; the design in its scene is the reference of the table, if it has one.
     pub study: Study,
-    /// Whether that is a damper of the paper.
+    /// Whether the reference design is one of the paper.
     pub of_paper: bool,
     /// The E1max that the paper prints, J.
     pub printed: Option<Positive>,
@@ -112,7 +112,7 @@ pub fn read_rows(path: &Path) -> Result<(Table2, Vec<PaperStudy>), StudyError> {
     if rows.is_empty() { Err(refuse(Rule::NoRows)) } else { Ok((table, rows)) }
 }
 
-/// Whether a damper is one that the paper publishes as an optimum: a row of its Table 2, with that mass and design.
+/// Whether a damper is an optimum published in the paper: it has the mass and design of a row of Table 2.
 pub fn is_of_paper(damper: &Damper) -> bool {
     built_in_rows().into_iter().any(|(paper, own)| {
         paper == Some(Design::of(damper)) && own.damper.is_some_and(|own| own.mass == damper.mass)

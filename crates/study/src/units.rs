@@ -1,7 +1,7 @@
 //! Numbers with a unit in a file: `"k1": "20 kN/m"` is `"k1": 20000` before anything else is read, on the same line.
 //!
-//! A field has the units of its name in the catalogue: a parameter, a quantity or a time. In `from` and `to`, in lists and in bounds it is the
-//! name around them that counts.
+//! The units of a field follow from its name in the catalogue: a parameter, a quantity or a time. For `from` and `to`, in lists and in
+//! bounds, the name of the enclosing field counts.
 
 use retune_model::{Measure, Parameter, Unit, unit};
 use serde_json::Value;
@@ -9,7 +9,7 @@ use serde_json::value::RawValue;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-/// A text in the place of a number that has no unit of its field.
+/// A text in place of a number, without a unit that its field allows.
 pub(super) struct Refused {
     pub line: usize,
     pub column: usize,
@@ -17,17 +17,17 @@ pub(super) struct Refused {
     pub problem: String,
 }
 
-/// The text of `whole` with every number that has a unit as one in its SI unit.
+/// The text of `whole` with every number with a unit converted to its SI unit.
 pub(super) fn in_si<'a>(text: &'a str, whole: &Value) -> Result<Cow<'a, str>, Refused> {
     let (mut found, mut out, mut copied) = (Vec::new(), String::new(), 0);
-    // The text is JSON, as it has been read as `whole`.
+    // This cannot fail: the text has already been parsed into `whole`.
     let _ = serde_json::from_str(text).and_then(|raw| texts(raw, &mut Vec::new(), &mut found));
     found.sort_by_key(|(quoted, _)| quoted.as_ptr());
     for (quoted, path) in found {
         let Ok(typed) = serde_json::from_str::<String>(quoted) else { continue };
         let Some(units) = units(&path, whole) else { continue };
         if typed.trim().parse::<f64>().is_ok() {
-            continue; // a number in quotes is a slip, and no unit
+            continue; // a number in quotes is a mistake, not a number with a unit
         }
         let start = quoted.as_ptr().addr() - text.as_ptr().addr();
         let number = read(&typed, units).map_err(|problem| refused(text, start, &path, &problem))?;
@@ -42,7 +42,7 @@ pub(super) fn in_si<'a>(text: &'a str, whole: &Value) -> Result<Cow<'a, str>, Re
     Ok(Cow::Owned(out))
 }
 
-/// Every text that is a value, with its quotes, as a part of the text that was parsed, and the path to it.
+/// Collects every string value, with its quotes, as a slice of the parsed text, and the path to it.
 fn texts<'a>(
     raw: &'a RawValue,
     path: &mut Vec<Step>,
@@ -89,10 +89,10 @@ fn refused(text: &str, at: usize, path: &[Step], problem: &str) -> Refused {
     }
 }
 
-/// A number of a name of the catalogue as it was typed, in the SI unit: without a unit, or with one of its own.
+/// Parses a number typed for a name of the catalogue, with one of its units or without, into its SI unit.
 ///
 /// # Errors
-/// It is none, or the name has no units; the message says what to give.
+/// It is not a number, or its unit is not one of the name; the message says what to give.
 pub fn typed(name: &str, text: &str) -> Result<f64, String> {
     read(text, of_name(name).unwrap_or_default())
 }
@@ -106,7 +106,7 @@ fn read(text: &str, units: &[Unit]) -> Result<f64, String> {
     }
 }
 
-/// The units of a name; none of what is no number, or has no unit.
+/// The units of a name; none if it is not a number or has no unit.
 fn of_name(name: &str) -> Option<&'static [Unit]> {
     match name {
         "t0" | "T" | "duration" => return Some(unit::TIME),
@@ -120,7 +120,7 @@ fn of_name(name: &str) -> Option<&'static [Unit]> {
     (!units[0].0.is_empty()).then_some(units)
 }
 
-/// The units of the field at a path; none where a text is no number.
+/// The units of the field at a path; none if it is not a number.
 fn units(path: &[Step], whole: &Value) -> Option<&'static [Unit]> {
     let names: Vec<&str> = path.iter().filter_map(Step::field).collect();
     let mut inwards = names.iter().rev().copied().peekable();
@@ -132,12 +132,12 @@ fn units(path: &[Step], whole: &Value) -> Option<&'static [Unit]> {
         _ => {}
     }
     let name = inwards.find(|name| !["from", "to", "set", "range"].contains(name))?;
-    // A band that moves with the structure has shares of its natural frequency.
+    // A relative band is given as fractions of the natural frequency.
     let shares = name == "omega" && own != "omega" && is_relative(path, whole);
     if shares { Some(unit::SHARE) } else { of_name(name) }
 }
 
-/// Whether the object around a field says that it is relative.
+/// Whether the object that contains a field has `"relative": true`.
 fn is_relative(path: &[Step], whole: &Value) -> bool {
     let around = path.split_last().map_or(path, |(_, around)| around);
     let inner = around.iter().try_fold(whole, |value, step| match step {

@@ -8,30 +8,30 @@ use serde_json::Value;
 use std::f64::consts::TAU;
 use std::path::Path;
 
-/// Share of the slowest transient that is left where a settled window begins.
+/// Fraction of the slowest transient that remains when a settled window begins.
 pub const LEFT: f64 = 1e-3;
-/// Share of the slowest transient above which maxima hold it.
-const MATTERS: f64 = 1e-2;
+/// Fraction of the slowest transient that counts as significant.
+const SIGNIFICANT: f64 = 1e-2;
 /// Periods of the force in a settled window.
 const PERIODS: f64 = 50.0;
-/// Periods of the slowest force of a band that a window holds at least.
+/// Least number of periods of a band's lowest frequency in a window.
 pub const SLOWEST: f64 = 5.0;
-/// Periods of the force before it, at most.
+/// Most periods of the force before a settled window.
 const MOST_PERIODS: f64 = 10_000.0;
 
 impl Span {
-    /// The window that begins once the slowest transient of a scene, with its walls open, is below [`LEFT`] of its start, and lasts 50
-    /// periods of the force; of a free decay, from the start until then, and of a pulse or a record as long after its end.
+    /// The window that begins when the slowest transient of a scene, with its walls open, has fallen to [`LEFT`] of its start, and lasts 50
+    /// periods of the force. For a free decay it runs from 0 until that time; for a pulse or a record, from 0 until as long after its end.
     pub fn settled(scene: &Scene) -> Result<Self, Rule> {
         let rate = scene.slowest_decay();
         let period = TAU / scene.forcing.frequency.get();
         let until = -LEFT.ln() / rate;
-        let passes = scene.forcing.is_transient();
+        let is_transient = scene.forcing.is_transient();
         let over = scene.forcing.history().map_or(0.0, |history| history.course.end());
-        let span = if passes { [0.0, over + until] } else { [until, until + PERIODS * period] };
+        let span = if is_transient { [0.0, over + until] } else { [until, until + PERIODS * period] };
         let [t0, end] = [NonNegative::new(span[0]).ok(), NonNegative::new(span[1]).ok()];
         match (t0, end.and_then(|end| Positive::new(end.get()).ok())) {
-            (Some(t0), Some(end)) if passes || until <= MOST_PERIODS * period => Ok(Self { t0, end }),
+            (Some(t0), Some(end)) if is_transient || until <= MOST_PERIODS * period => Ok(Self { t0, end }),
             _ => Err(Rule::not_allowed(
                 "window",
                 format!("settled, of a scene whose slowest transient decays by {rate} 1/s"),
@@ -41,7 +41,8 @@ impl Span {
     }
 }
 
-/// Where a study says that its window is settled, its text with the numbers of that window, on the same lines.
+/// Replaces `"window": "settled"` in the text of a study by the numbers of that window, without changing the line numbers; none for any
+/// other window.
 ///
 /// # Errors
 /// As [`Span::settled`]; a record of the scene cannot be read. `base` is the directory where its path begins.
@@ -57,24 +58,24 @@ pub fn resolved(text: &str, base: &Path) -> Result<Option<String>, Rule> {
     let (Some(Part { mut scene, optimize, .. }), Some(place)) = (part, place(text)) else { return Ok(None) };
     records::read(&mut scene, base)?;
     let Span { t0, end } = Span::settled(&scene)?;
-    let over = lowest(&optimize["objective"], &scene).map_or(0.0, |lowest| SLOWEST * TAU / lowest);
+    let over = lowest_frequency(&optimize["objective"], &scene).map_or(0.0, |lowest| SLOWEST * TAU / lowest);
     let end = if scene.forcing.is_transient() { end.get() } else { end.get().max(t0.get() + over) };
     let window = format!("{{ \"t0\": {}, \"T\": {end} }}", t0.get());
     Ok(Some(format!("{}{window}{}", &text[..place.start], &text[place.end..])))
 }
 
 /// The lowest frequency of the bands of an objective, rad/s.
-fn lowest(objective: &Value, scene: &Scene) -> Option<f64> {
+fn lowest_frequency(objective: &Value, scene: &Scene) -> Option<f64> {
     let own = objective["omega"]["from"].as_f64().map(|from| match objective["omega"]["relative"] {
         Value::Bool(true) => from * scene.primary.natural_frequency(),
         _ => from,
     });
     let parts = objective["sum"].as_array().into_iter().flatten();
-    let all = parts.filter_map(|part| lowest(&part["objective"], scene)).chain(own);
+    let all = parts.filter_map(|part| lowest_frequency(&part["objective"], scene)).chain(own);
     all.filter(|lowest| *lowest > 0.0).reduce(f64::min)
 }
 
-/// Where the text has the word behind the field `window`.
+/// The position of the word `"settled"` after the field `window`.
 fn place(text: &str) -> Option<std::ops::Range<usize>> {
     const WORD: &str = "\"settled\"";
     text.match_indices("\"window\"").find_map(|(at, field)| {
@@ -85,16 +86,16 @@ fn place(text: &str) -> Option<std::ops::Range<usize>> {
 }
 
 impl crate::Study {
-    /// The share of the slowest transient that is left at t0, where maxima in the window hold it and it matters: not where the whole run is asked for,
-    /// or the forcing has no frequency.
+    /// The fraction of the slowest transient that remains at t0, if it is significant and maxima are taken in the window: none if the whole
+    /// run counts or the forcing is transient.
     pub fn unsettled(&self) -> Option<f64> {
         let t0 = self.window.t0.get();
         let left = (-self.scene.slowest_decay() * t0).exp();
         let windowed = self.objective().response == retune_optim::Response::Window;
-        (t0 > 0.0 && windowed && left >= MATTERS && !self.scene.forcing.is_transient()).then_some(left)
+        (t0 > 0.0 && windowed && left >= SIGNIFICANT && !self.scene.forcing.is_transient()).then_some(left)
     }
 
-    /// A sentence on the transient that maxima in the window hold, if its share matters.
+    /// A warning that the record ends before the run, or that maxima in the window include a significant transient.
     pub fn transient(&self) -> Option<String> {
         if let Some(Course::Record(record)) = self.scene.forcing.history().map(|history| history.course)
             && let Some(end) =
@@ -153,7 +154,7 @@ mod tests {
     fn exact_a_settled_window_begins_when_a_thousandth_is_left() {
         let study = from_text(&building(&json!("settled")), "building").expect("a study");
         let (t0, end) = (study.window.t0.get(), study.window.end.get());
-        // Of exp(-0.01 ω t) a thousandth is left; then 50 periods of 1 / 0.3 s.
+        // exp(-0.01 ω t) has fallen to a thousandth; then 50 periods of 1 / 0.3 s.
         let expected = 1000f64.ln() / (0.01 * 0.6 * std::f64::consts::PI);
         assert!(
             (t0 / expected - 1.0).abs() < 1e-12 && ((end - t0) * 0.3 / 50.0 - 1.0).abs() < 1e-12,

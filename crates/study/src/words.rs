@@ -6,8 +6,8 @@ use std::borrow::Cow;
 use std::f64::consts::TAU;
 use std::fmt::Display;
 
-/// The range over which the E1max of an objective is taken, for a scene at `omega` (rad/s): "worst over omega = 5 to 8 rad/s". Nothing of a
-/// scene without a frequency, where it is a single value.
+/// The range over which the E1max of an objective is taken, for a scene at `omega` (rad/s): "worst over omega = 5 to 8 rad/s". Empty for a
+/// single value of a scene without a frequency.
 pub fn over(objective: &Objective, omega: f64) -> String {
     if !objective.sum.is_empty() {
         return format!("weighted sum of {}", counted(objective.sum.len() as u64, "objective"));
@@ -22,7 +22,7 @@ pub fn over(objective: &Objective, omega: f64) -> String {
         objective.restitution.as_deref().map(restitutions),
     ];
     let over: Vec<String> = over.into_iter().flatten().collect();
-    // A decay, a pulse and a record have no frequency.
+    // Decays, pulses and records have no frequency.
     let single = objective.omega.is_none() && omega > 0.0;
     let own = if single { format!("omega = {omega} rad/s") } else { String::new() };
     let worst = if over.is_empty() { String::new() } else { format!("worst over {}", over.join(" and ")) };
@@ -84,14 +84,14 @@ pub fn are(count: u64, noun: &str) -> String {
     format!("{} {}", counted(count, noun), if count == 1 { "is" } else { "are" })
 }
 
-/// A number to six significant digits, as short as it can be: `215`, `0.0603333`, `1.23457e-9`.
+/// A number to six significant digits, in the shortest form: `215`, `0.0603333`, `1.23457e-9`.
 pub fn short(value: f64) -> String {
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
     let size = rounded.abs();
     if size != 0.0 && !(1e-4..1e7).contains(&size) { format!("{rounded:e}") } else { format!("{rounded}") }
 }
 
-/// A number to some significant digits, as short as it can be.
+/// A number to `digits` significant digits, in the shortest form.
 pub fn rounded(value: f64, digits: usize) -> String {
     short(format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value))
 }
@@ -101,13 +101,13 @@ pub fn frequency(omega: f64) -> String {
     format!("{} rad/s ({} Hz)", rounded(omega, 4), rounded(hertz_and_rpm(omega)[0], 4))
 }
 
-/// k2 (N/m), c2 (N·s/m), D (m) and C (m) of a design as cells of a table, to some significant digits; `none` where it has no walls.
+/// k2 (N/m), c2 (N·s/m), D (m) and C (m) of a design as table cells with `digits` significant digits; `none` for gaps without walls.
 pub fn design_cells(design: &Design, digits: usize) -> [String; 4] {
     design.values().map(|value| if value.is_nan() { "none".to_owned() } else { rounded(value, digits) })
 }
 
-/// A design in words, to some significant digits: `k2 = 215 N/m, c2 = 35 N·s/m, D = 0.06 m, C = 0.06 m`, or `…, no walls`; then what else it
-/// has.
+/// A design in words with `digits` significant digits: `k2 = 215 N/m, c2 = 35 N·s/m, D = 0.06 m, C = 0.06 m`, or `…, no walls`; then its
+/// other parameters.
 pub fn design_words(design: &Design, digits: usize) -> String {
     let [k2, c2, d, c] = design_cells(design, digits);
     let walls = if design.get(Parameter::D).is_nan() {

@@ -1,6 +1,6 @@
-//! Any valid scene, over fifteen orders of magnitude about the paper's, and what must hold for every one of them: a finite
-//! answer or a typed error, within the work allowed, and nothing that physics rules out. The property tests draw scenes from
-//! it at random, the fuzzer where new code is reached.
+//! Generates any valid scene, over fifteen orders of magnitude about the paper's, and checks what must hold for every one: a
+//! finite answer or a typed error, within the limit on work, and nothing that physics rules out. The property tests draw scenes at
+//! random, the fuzzer by code coverage.
 
 use crate::scenes::SSVI;
 use retune_model::{
@@ -9,7 +9,7 @@ use retune_model::{
 };
 use retune_solver::{Contacts, Method, Response, SceneKind, Settings, SolverError, Window, e1_max, simulate};
 
-/// Numbers in [0, 1] that make a run.
+/// Number of draws in [0, 1] that define a run.
 pub const DRAWS: usize = 28;
 
 /// Most steps of a run.
@@ -18,15 +18,15 @@ pub const MOST_STEPS: u64 = 5_000;
 /// A run of any scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Anything {
-    /// What moves.
+    /// The scene.
     pub scene: Scene,
-    /// When it is looked at.
+    /// The window of the run.
     pub window: Window,
-    /// How the run is made.
+    /// The settings of the run.
     pub settings: Settings,
 }
 
-/// Orders of magnitude that a parameter is drawn from, half of them on each side of the paper's value.
+/// Orders of magnitude over which a parameter is drawn, centred on the paper's value.
 const ORDERS: f64 = 15.0;
 
 /// `about` moved by up to half of [`ORDERS`] up or down.
@@ -38,7 +38,7 @@ fn positive(about: f64, draw: f64) -> Positive {
     Positive::new(scaled(about, draw)).expect("a positive number")
 }
 
-/// The same; the lowest of the draws is exactly zero.
+/// Like [`positive`], but the lowest draw gives exactly zero.
 fn not_negative(about: f64, draw: f64) -> NonNegative {
     let value = if draw < 0.02 { 0.0 } else { scaled(about, draw) };
     NonNegative::new(value).expect("a number not below zero")
@@ -48,7 +48,7 @@ fn poisson(draw: f64) -> PoissonRatio {
     PoissonRatio::new(0.5 - 1.499 * draw).expect("a Poisson's ratio")
 }
 
-/// What a contact loses: nothing in two draws of three, λ in one of six, the same restitution at every speed in another.
+/// The loss of a contact: none in two draws of three, λ in one of six, one restitution at every speed in the last sixth.
 fn loss(draw: f64) -> Loss {
     let e = 6.0 * draw - 5.0;
     match Restitution::new(e) {
@@ -58,7 +58,7 @@ fn loss(draw: f64) -> Loss {
 }
 
 impl Anything {
-    /// The run that `draws`, each in [0, 1], stand for.
+    /// The run defined by `draws`, each in [0, 1].
     pub fn new(draws: &[f64; DRAWS]) -> Self {
         let [m1, c1, k1, p, omega, m2, k2, c2, d, c, r, q, e1, e2, e3, e4, rest @ ..] = *draws;
         let [nu1, nu2, nu3, nu4, t, t0, rtol, atol, method, contacts, bare, lambda] = rest;
@@ -80,8 +80,8 @@ impl Anything {
                 young_4: positive(SSVI.young[3], e4),
                 poisson_4: poisson(nu4),
                 loss: loss(lambda),
-                // Of one lossy damper in two, contacts with the obstacle lose something else.
-                loss_obstacle: (lambda > 0.8).then(|| loss(1.3 - lambda)),
+                // In three of five lossy dampers, contacts with the obstacle lose something else.
+                loss_obstacle: (lambda > 0.8).then(|| loss(1.8 - lambda)),
                 strength: None,
                 density: None,
             })),
@@ -97,7 +97,7 @@ impl Anything {
         };
         let to = 10f64.powf(4.0 * t - 2.0);
         let window = Window { from: if t0 < 0.2 { 0.0 } else { 0.999 * t0 * to }, to };
-        // The hybrid half of the time: it is the default, and the others share one loop.
+        // The hybrid in half of the draws: it is the default, and the other methods share one loop.
         let others = &Method::ALL[1..];
         let method = match method {
             x if x < 0.5 => Method::Hybrid,
@@ -114,8 +114,7 @@ impl Anything {
         Self { scene, window, settings }
     }
 
-    /// The run that the fuzzer's bytes stand for: two a number, which is finer than any threshold that a scene has. Missing bytes
-    /// are the middle, the paper's value.
+    /// The run defined by the fuzzer's bytes, two per draw: finer than any threshold of a scene. Missing draws are 0.5, the paper's value.
     pub fn of_bytes(bytes: &[u8]) -> Self {
         let mut draws = [0.5; DRAWS];
         for (draw, pair) in draws.iter_mut().zip(bytes.chunks_exact(2)) {
@@ -124,10 +123,10 @@ impl Anything {
         Self::new(&draws)
     }
 
-    /// Runs it in every way there is.
+    /// Makes all kinds of runs and checks their results.
     ///
     /// # Panics
-    /// Where something does not hold that must.
+    /// If a property is violated.
     pub fn check(&self) {
         let Self { scene, window, settings } = self;
         let largest = e1_max(scene, *window, settings, f64::INFINITY);
@@ -159,7 +158,7 @@ impl Anything {
         }
     }
 
-    /// The largest motions of the structure are numbers, of the window, and none has more energy than E1max.
+    /// The largest motions of the structure are finite and lie in the window; none has more energy than E1max.
     fn check_structure(&self, found: &Response) {
         for largest in found.structure.all() {
             assert!(largest.value.is_finite() && largest.value >= 0.0, "{found:?}: {self:?}");
@@ -177,8 +176,8 @@ impl Anything {
         assert!(t >= self.window.from && t <= self.window.to, "t = {t}: {self:?}");
     }
 
-    /// From rest the power of the force is at most P √(2E/m1), so that E <= (P t)²/(2 m1): no method may make energy. Those that
-    /// are held to a tolerance only may by some of it, and a fixed step by anything.
+    /// From rest the power of the force is at most P √(2E/m1), so that E <= (P t)²/(2 m1): no method may create energy. The hybrid
+    /// has an allowance of 1e-6, general methods one of 100 %.
     fn check_energy(&self, e1: f64) {
         let most = (self.scene.forcing.amplitude().map_or(0.0, |(_, p)| p.get()) * self.window.to).powi(2)
             / (2.0 * self.scene.primary.mass.get());
@@ -209,7 +208,7 @@ impl Anything {
         assert!(t >= 0.0 && t <= self.window.to, "{error}: {self:?}");
     }
 
-    /// The objective and the full run tell the same of a linear scene. (With contacts the motion may be chaotic.)
+    /// The objective and the full run agree for a bare structure. (With contacts the motion may be chaotic.)
     fn check_same(&self, full: f64, objective: f64) {
         if self.scene.damper.is_none() && self.settings.method == Method::Hybrid {
             let most = full.max(objective);
@@ -217,8 +216,8 @@ impl Anything {
         }
     }
 
-    /// No wall on which the damper does not rest at first has a contact force before a touch-down. (That none is missed is seen by
-    /// the solver itself, whose [`SolverError::Missed`] is let through nowhere here.)
+    /// A wall that the damper does not touch at rest has no contact force without a touch-down. (The solver itself detects missed
+    /// contacts, and [`SolverError::Missed`] is never accepted here.)
     fn check_touches(&self, found: &Response) {
         let Some(damper) = self.scene.damper else { return };
         let apart = damper.rest_distance.get() > 0.0 && damper.clearance.get() > 0.0;

@@ -15,19 +15,19 @@ impl Default for Desk {
 }
 
 impl Desk {
-    /// Empty.
+    /// An empty directory.
     pub fn new() -> Self {
         Self(tempfile::tempdir().expect("a temporary directory"))
     }
 
-    /// With the study `study.json`.
+    /// A directory with the study `study.json`.
     pub fn with(study: &Value) -> Self {
         let desk = Self::new();
         desk.write_json("study.json", study);
         desk
     }
 
-    /// With the paper's table and the studies of its two dampers at one frequency, each changed by `change`.
+    /// A directory with the paper's table and the studies of its two dampers at one frequency, each modified by `change`.
     pub fn with_table2(table: &str, change: impl Fn(&mut Value)) -> Self {
         let desk = Self::new();
         let mut rows = committed("table2.json");
@@ -42,19 +42,19 @@ impl Desk {
         desk
     }
 
-    /// Where a file or directory of this name is.
+    /// The path of a file or directory.
     pub fn path(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
     }
 
-    /// Writes a file, and the directories that it needs.
+    /// Writes a file, creating its directories.
     pub fn write(&self, name: &str, text: impl AsRef<[u8]>) {
         let path = self.path(name);
         std::fs::create_dir_all(path.parent().expect("a directory")).expect("a directory");
         std::fs::write(path, text).expect("a file");
     }
 
-    /// The same with a JSON text.
+    /// Writes a JSON file.
     pub fn write_json(&self, name: &str, value: &Value) {
         self.write(name, serde_json::to_string_pretty(value).expect("JSON"));
     }
@@ -107,7 +107,7 @@ impl Desk {
         removed.unwrap_or_else(|error| panic!("{name}: {error}"));
     }
 
-    /// Both directories hold the same files.
+    /// Asserts that both directories hold the same files.
     #[track_caller]
     pub fn assert_same(&self, one: &str, other: &str) {
         let [one, other] = [one, other].map(|below| self.everything(below));
@@ -129,7 +129,7 @@ pub fn committed(name: &str) -> Value {
     serde_json::from_str(&text).expect("JSON")
 }
 
-/// Lets the certificate of a study look at one start a frequency beside that from rest, which is quick. The parts of a sum keep their own.
+/// Makes the certificate of a study quick: one start per frequency besides rest. The parts of a sum keep their own number.
 pub fn few_starts(study: &mut Value) {
     let objective = &mut study["optimize"]["objective"];
     if objective.get("sum").is_none() {
@@ -156,7 +156,7 @@ pub fn tiny() -> Value {
     study
 }
 
-/// That study for another stiffness of the structure.
+/// The tiny study with another stiffness of the structure.
 pub fn edited(k1: f64) -> Value {
     let mut study = tiny();
     study["scene"]["primary"]["k1"] = json!(k1);
@@ -214,7 +214,7 @@ pub fn number(json: &Value, path: &str) -> f64 {
     json.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("{path}: {json}"))
 }
 
-/// The text with the third decimal changed in its first number of six decimals or more.
+/// The text with the third decimal changed of the first number that has six or more.
 pub fn altered(text: &str) -> String {
     let decimals = |rest: &str| rest.bytes().take_while(u8::is_ascii_digit).count();
     let mut points = text.match_indices('.').map(|(at, _)| at + 1);
@@ -228,7 +228,7 @@ pub fn count_lines(path: &Path) -> usize {
     std::fs::read(path).map_or(0, |bytes| bytes.iter().filter(|byte| **byte == b'\n').count())
 }
 
-/// A text with its lines and paragraphs joined: where a line is broken does not matter.
+/// A text with its lines and paragraphs joined, so that line breaks do not matter.
 pub fn flat(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -17,7 +17,7 @@ pub fn pulse(of: Of, shape: Shape, peak: f64, duration: f64) -> History {
     History { of, course: Course::Pulse(pulse) }
 }
 
-/// A force of a recipe in SI units, with samples so many times as dense as by default.
+/// A force generated from a form in SI units, with samples `denser` times as dense as by default.
 pub fn made(of: Of, form: Form, duration: f64, denser: f64) -> History {
     let duration = Positive::new(duration).expect("above 0");
     let made = Made::new(Recipe { form, unit: of.units()[0], duration, step: None });
@@ -30,7 +30,7 @@ pub fn record(of: Of, samples: Samples) -> History {
     History { of, course: Course::Record(Record::new(file).with(samples)) }
 }
 
-/// A record of noise up to `size`, its samples about `step` (s) apart, equidistant or not.
+/// A record of noise up to `size`, with samples about `step` (s) apart, equidistant if `even`.
 pub fn noise(of: Of, size: f64, (step, count, even): (f64, usize, bool), spread: &mut Spread) -> History {
     let values: Vec<f64> = (0..count).map(|_| size * spread.signed()).collect();
     let samples = if even {
@@ -47,7 +47,7 @@ pub fn noise(of: Of, size: f64, (step, count, even): (f64, usize, bool), spread:
 }
 
 impl Numbers {
-    /// The forcing of a history, from rest.
+    /// The scene under a history, from rest.
     pub fn under(&self, history: History) -> Scene {
         let forcing =
             Forcing { source: Source::History(history), frequency: NonNegative::default(), start: None };

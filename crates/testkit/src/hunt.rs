@@ -1,5 +1,5 @@
-//! Hunts for errors: many scenes are drawn, and what must hold of every one of them is checked. `cargo test` draws few; the programs of
-//! `retune-lab` draw as many as they are told to and write the tables of `results/robustness`.
+//! Hunts for errors: properties that must hold for every scene are checked on many random scenes. `cargo test` draws few; the programs
+//! of `retune-lab` draw any number and write the tables of `results/robustness`.
 
 pub mod bands;
 #[cfg(feature = "dynamics")]
@@ -35,7 +35,7 @@ mod twofold;
 pub struct Hunt {
     /// Its table, line by line.
     pub rows: Vec<String>,
-    /// What must not be, each in a line; nothing where all is well.
+    /// Violations, one per line; empty if there are none.
     pub faults: Vec<String>,
 }
 
@@ -45,14 +45,14 @@ impl Hunt {
         self.rows.push(line);
     }
 
-    /// Notes a fault where something does not hold.
+    /// Records a fault unless `holds`.
     pub fn check(&mut self, holds: bool, fault: impl FnOnce() -> String) {
         if !holds {
             self.faults.push(fault());
         }
     }
 
-    /// Fails with every fault.
+    /// Panics with all faults, if any.
     ///
     /// # Panics
     /// At any fault.

@@ -1,4 +1,4 @@
-//! What the tests of several crates share. No part of the program: only tests, benchmarks, the fuzzer and the comparison use it.
+//! Code shared by the tests of several crates. Not part of the program: only tests, benchmarks, the fuzzer and the comparison use it.
 
 #[cfg(feature = "anything")]
 pub mod anything;

@@ -1,11 +1,11 @@
-//! Observers that tests need, and calls of jobs that must succeed or be refused.
+//! Observers for tests, and calls of jobs that must succeed or fail.
 
 use retune_jobs::{Error, Observer, Progress, Silent};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 
-/// Keeps what a job says: as many lines of each kind as there were.
+/// Records every line that a job reports, with its kind.
 #[derive(Default)]
 pub struct Record {
     said: Mutex<Vec<(Kind, String)>>,
@@ -35,12 +35,12 @@ impl Record {
         self.of(&[Kind::Result])
     }
 
-    /// Those and the lines of the log, in their order.
+    /// The lines of the result and of the log, in order.
     pub fn all(&self) -> String {
         self.of(&[Kind::Result, Kind::Log])
     }
 
-    /// The stages whose progress was told, and of how many parts each is.
+    /// The stages whose progress was reported, and the number of parts of each.
     pub fn stages(&self) -> String {
         self.of(&[Kind::Stage])
     }
@@ -71,7 +71,7 @@ impl Observer for Record {
     fn resumable(&self) {}
 }
 
-/// Ends a job at one of its evaluations or lines of the log, as a crash would: the job has no chance to save anything.
+/// Unwinds a job at one of its evaluations or log lines, like a crash: the job has no chance to save anything.
 struct Cut(Arc<AtomicU64>);
 
 impl Cut {
@@ -105,7 +105,7 @@ impl Progress for Cut {
     fn finish(&self) {}
 }
 
-/// Begins a job and cuts it off at the `at`-th moment that it tells of.
+/// Runs a job and aborts it at its `at`-th evaluation or log line.
 #[track_caller]
 pub fn cut_off<T>(at: u64, job: impl FnOnce(&dyn Observer) -> Result<T, Error>) {
     let watch = Cut(Arc::new(AtomicU64::new(at)));
@@ -113,7 +113,7 @@ pub fn cut_off<T>(at: u64, job: impl FnOnce(&dyn Observer) -> Result<T, Error>) 
     assert!(ended.is_err(), "the job has fewer moments than {at}: {ended:?}");
 }
 
-/// Ends a job where a stage begins.
+/// Unwinds a job at the beginning of a stage.
 struct CutBefore(&'static str, AtomicU64);
 
 impl Observer for CutBefore {
@@ -125,7 +125,7 @@ impl Observer for CutBefore {
     }
 }
 
-/// Begins a job and cuts it off where it begins a stage for the `times`-th time.
+/// Runs a job and aborts it when it begins a stage for the `times`-th time.
 #[track_caller]
 pub fn cut_off_before<T>(
     (stage, times): (&'static str, u64),

@@ -26,11 +26,11 @@ pub struct Numbers {
     pub young: [f64; 4],
     /// λ of contacts that lose energy, s/m.
     pub lambda: f64,
-    /// Restitution at every speed, 1 of those that λ is given for.
+    /// Restitution at every speed; 1 if λ is given.
     pub e: f64,
-    /// The restitution of contacts with the obstacle, where that is another.
+    /// The restitution of contacts with the obstacle, if it differs.
     pub e_obstacle: Option<f64>,
-    /// e of rigid walls in the place of the surfaces.
+    /// Restitution of rigid walls, which then replace the surfaces.
     pub rigid: Option<f64>,
 }
 
@@ -70,10 +70,10 @@ pub const ROW3: Numbers = Numbers { k2: 220.375, c2: 233.45, d: 0.060375, c: 0.3
 /// Both walls within reach.
 pub const TWO_SIDED: Numbers = Numbers { k2: 2400.0, c2: 100.0, d: 0.1, c: 0.1, ..SSVI };
 
-/// The same with contacts that lose energy: at 1 m/s a restitution of 0.79.
+/// [`TWO_SIDED`] with contacts that lose energy: at 1 m/s a restitution of 0.79.
 pub const LOSSY: Numbers = Numbers { lambda: 0.4, ..TWO_SIDED };
 
-/// The same with one restitution at every speed.
+/// [`TWO_SIDED`] with one restitution at every speed.
 pub const RESTORING: Numbers = Numbers { e: 0.7, ..TWO_SIDED };
 
 /// Rigid walls with this restitution.
@@ -84,7 +84,7 @@ pub fn rigid(e: f64) -> Contact {
     Contact::Rigid(Rigid { restitution: Bounce::new(e).expect("in [0, 1]") })
 }
 
-/// What moves the structure at a frequency, with sizes of much the same effect: N, kg·m, m and m/s².
+/// The kinds of harmonic forcing, with amplitudes of similar effect: N, kg·m, m and m/s².
 pub const DRIVEN: [(Amplitude, f64); 4] = [
     (Amplitude::Force, 800.0),
     (Amplitude::Imbalance, 20.0),
@@ -93,7 +93,7 @@ pub const DRIVEN: [(Amplitude, f64); 4] = [
 ];
 
 impl Numbers {
-    /// What contacts lose.
+    /// The loss of contacts.
     fn loss(&self) -> Loss {
         if self.e < 1.0 {
             Loss::Restoring(Restitution::new(self.e).expect("above 0"))
@@ -143,24 +143,24 @@ impl Numbers {
         }
     }
 
-    /// All of it.
+    /// The whole scene.
     pub fn scene(&self) -> Scene {
         Scene { primary: self.primary(), forcing: self.forcing(), damper: Some(self.damper()) }
     }
 
-    /// With a damper that has no walls.
+    /// The scene with a damper that has no walls.
     pub fn open_scene(&self) -> Scene {
         let none = NonNegative::default();
         let damper = Damper { rest_distance: none, clearance: none, contact: None, ..self.damper() };
         Scene { damper: Some(damper), ..self.scene() }
     }
 
-    /// Without a damper.
+    /// The scene without a damper.
     pub fn bare_scene(&self) -> Scene {
         Scene { damper: None, ..self.scene() }
     }
 
-    /// The same with another kind of forcing of the size `p`.
+    /// The scene with another kind of forcing of amplitude `p`.
     pub fn forced_by(&self, amplitude: Amplitude) -> Scene {
         let forcing = Forcing {
             source: Source::Harmonic(amplitude, non_negative(self.p)),
@@ -175,7 +175,7 @@ impl Numbers {
         Coupled::new(&self.primary(), &self.forcing(), &self.damper())
     }
 
-    /// Those of the structure alone.
+    /// The equations of the structure alone.
     pub fn bare(&self) -> Bare {
         Bare::new(&self.primary(), &self.forcing())
     }

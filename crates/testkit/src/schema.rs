@@ -1,12 +1,12 @@
-//! A validator of JSON Schema (draft 2020-12) with the keywords that the schemas of Retune use, and no others: one that knows all of them takes
-//! longer to build than half of the program.
+//! A validator of JSON Schema (draft 2020-12) for only the keywords that Retune's schemas use. A complete validator takes longer to compile
+//! than half of the program.
 
 use serde_json::Value;
 
-/// What is wrong with a value, each with its place; nothing where it is valid.
+/// The errors of a value, each with its place; empty if it is valid.
 ///
 /// # Panics
-/// At a keyword that it does not know: it leaves nothing unchecked.
+/// At an unknown keyword, so that nothing is left unchecked.
 pub fn errors(schema: &Value, value: &Value) -> Vec<String> {
     let mut found = Vec::new();
     check(schema, schema, value, "", &mut found);
@@ -45,7 +45,7 @@ fn check(root: &Value, schema: &Value, value: &Value, at: &str, found: &mut Vec<
                 Value::Array(all) => all.iter().any(|one| is_of_type(value, one)),
                 one => is_of_type(value, one),
             },
-            // The one that the schemas have: more than a number.
+            // The only pattern in the schemas: more than a number.
             "pattern" => {
                 assert_eq!(said, "[^-+.0-9eE ]", "a pattern that is not known here");
                 value.as_str().is_none_or(|text| text.contains(|c: char| !"-+.0123456789eE ".contains(c)))

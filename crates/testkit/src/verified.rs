@@ -6,18 +6,18 @@ use retune_jobs::Error;
 use retune_jobs::verify::verify;
 use serde_json::json;
 
-/// How a verification ended.
+/// The outcome of a verification.
 #[derive(Debug, PartialEq)]
 pub enum End {
-    /// All that was looked at.
+    /// Everything that was checked holds.
     Holds,
-    /// What does not hold.
+    /// Something does not hold.
     Not(String),
-    /// What cannot be checked, where all else holds.
+    /// Something cannot be checked; all else holds.
     Unchecked(String),
 }
 
-/// Verifies the results in a directory of the desk; returns what was said and the end.
+/// Verifies the results in a directory of the desk; returns the report and the outcome.
 #[track_caller]
 pub fn look(desk: &Desk, out: &str, sample: usize, within: f64) -> (String, End) {
     let record = Record::default();
@@ -32,7 +32,7 @@ pub fn look(desk: &Desk, out: &str, sample: usize, within: f64) -> (String, End)
     (said, end)
 }
 
-/// Verifies results that hold; returns what was said.
+/// Verifies results that must hold; returns the report.
 #[track_caller]
 pub fn holds(desk: &Desk, out: &str, sample: usize) -> String {
     let (said, end) = look(desk, out, sample, 0.0);
@@ -58,7 +58,7 @@ pub fn desk() -> Desk {
     desk
 }
 
-/// Verifies results that hold, then again with one digit of each of some of their files changed.
+/// Verifies results that must hold, then again with one digit changed in each of `files`.
 #[track_caller]
 pub fn a_changed_digit_is_found(desk: &Desk, out: &str, files: &[&str]) {
     let said = holds(desk, out, 20);

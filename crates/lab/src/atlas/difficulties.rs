@@ -5,7 +5,7 @@ use crate::scenes::{CHATTER, Case, Numbers, SSVI, TMD, critical_damping, stiffer
 use retune_solver::observe::{RelativePosition, RunningMaximum};
 use retune_solver::{Hybrid, Motion, Phase};
 
-/// A scene designed to make methods fail, with the group in which it stands in the atlas.
+/// A scene designed to make methods fail, with its group in the atlas.
 pub struct Difficulty {
     pub group: &'static str,
     pub case: Case,
@@ -14,12 +14,12 @@ pub struct Difficulty {
 /// Scenes of a group, each with its name and the end of its run, s.
 type Scenes = [(&'static str, f64, Numbers)];
 
-/// All of them, but the energy over 1,000 impacts.
+/// All difficulties except the energy over 1,000 impacts.
 pub fn all() -> Any<Vec<Difficulty>> {
     let deepest = reach(SSVI, 5.0)?;
     let graze = |depth: f64| Numbers { d: deepest - depth, c: 5.0, ..SSVI };
     let heavy = Numbers { d: 0.0, k2: 5000.0, ..SSVI };
-    // Spring and dashpot in proportion, so that the damper keeps its frequency and damping ratio.
+    // Spring and dashpot scale with the mass, so that the damper keeps its frequency and damping ratio.
     let mass_ratio = |ratio: f64| {
         let share = 1000.0 * ratio / 60.0;
         Numbers { m2: 1000.0 * ratio, k2: SSVI.k2 * share, c2: SSVI.c2 * share, ..SSVI }
@@ -87,8 +87,8 @@ pub fn all() -> Any<Vec<Difficulty>> {
 
 const BARE: &str = "resonance without damping, bare";
 
-/// A heavy damper on a stiff structure: in one flight step of the hybrid, concave at both ends, E1 has two maxima with a minimum
-/// between; treating it as a step with one maximum lost 0.2 % of E1max. Found by adversarial search.
+/// A heavy damper on a stiff structure: in one flight step of the hybrid, E1 is concave at both ends but has two maxima with a
+/// minimum in between; treating it as a step with one maximum lost 0.2 % of E1max. Found by adversarial search.
 const TWO_MAXIMA: Numbers = Numbers {
     k1: 62235.81747936603,
     omega: 8.576461062918153,
@@ -101,7 +101,7 @@ const TWO_MAXIMA: Numbers = Numbers {
     ..SSVI
 };
 
-/// The TMD without damping, its walls out of reach, at the lower root of (k1 + k2 - m1 ω²)(k2 - m2 ω²) = k2².
+/// The undamped TMD, with walls out of reach, at the lower root of (k1 + k2 - m1 ω²)(k2 - m2 ω²) = k2².
 fn resonant_tmd() -> Numbers {
     let Numbers { m1, k1, m2, k2, .. } = TMD;
     let (half, product) = (0.5 * ((k1 + k2) / m1 + k2 / m2), k1 * k2 / (m1 * m2));

@@ -13,7 +13,7 @@ const GAP: f64 = 0.4;
 const ROW: f64 = 15.5;
 /// All verdicts of runs, the best first.
 pub const VERDICTS: [Verdict; 5] =
-    [Verdict::Works, Verdict::Miscounts, Verdict::Inaccurate, Verdict::Says, Verdict::Silent];
+    [Verdict::Works, Verdict::Miscounts, Verdict::Inaccurate, Verdict::ReportsError, Verdict::Silent];
 
 /// A row: group, difficulty, cells.
 pub type Row = (&'static str, &'static str, Vec<Cell>);
@@ -24,7 +24,7 @@ const fn look(verdict: Verdict) -> (&'static str, Colour, f64) {
         Verdict::Works => ("✓", GREEN, 0.16),
         Verdict::Miscounts => ("±", YELLOW, 0.4),
         Verdict::Inaccurate => ("≈", ORANGE, 0.4),
-        Verdict::Says => ("!", SKY, 0.4),
+        Verdict::ReportsError => ("!", SKY, 0.4),
         Verdict::Silent => ("✗", VERMILION, 0.85),
         Verdict::NotRun => ("–", SKY, 0.0),
     }
@@ -55,7 +55,7 @@ fn thousands(count: u64) -> String {
     }
 }
 
-/// A name in two lines, the last word below.
+/// A name in two lines, the last word on the second.
 fn in_lines(name: &str) -> String {
     match name.rsplit_once(' ') {
         Some((first, "ms")) => in_lines(first) + " ms",
@@ -64,7 +64,7 @@ fn in_lines(name: &str) -> String {
     }
 }
 
-/// Draws the matrix of methods of these names.
+/// Draws the matrix; `ways` are the names of the methods.
 pub fn matrix(path: &Path, title: &str, ways: &[&str], rows: &[Row]) -> Any<()> {
     let mut layers = Vec::new();
     let (mut names, mut y, mut group) = (Vec::new(), 0.0, rows.first().map_or("", |row| row.0));
@@ -78,7 +78,7 @@ pub fn matrix(path: &Path, title: &str, ways: &[&str], rows: &[Row]) -> Any<()> 
             let (sign, colour, opacity) = look(cell.verdict);
             layers.push(Layer::Band { x: (x - 0.48, x + 0.48), y: (y - 0.46, y + 0.46), colour, opacity });
             let said = match cell.verdict {
-                Verdict::Says => "stops".into(),
+                Verdict::ReportsError => "stops".into(),
                 Verdict::NotRun => "not run".into(),
                 _ => figure(cell.error),
             };

@@ -11,8 +11,8 @@ use std::path::Path;
 
 /// Impacts.
 pub const IMPACTS: u64 = 1000;
-/// Time limit, s: a method that has not made the impacts by then has lost energy.
-const PATIENCE: f64 = 1000.0;
+/// Time limit, s: a method that has not reached the impacts by then has lost energy.
+const TIME_LIMIT: f64 = 1000.0;
 /// The damper's initial speed, m/s.
 const SPEED: f64 = 4.0;
 
@@ -21,9 +21,9 @@ pub struct Drift {
     pub settings: Settings,
     /// Tolerance, or step (s).
     pub setting: f64,
-    /// Impacts until the end.
+    /// Number of impacts until the end.
     pub impacts: u64,
-    /// Relative change of the true mechanical energy, or why there is none.
+    /// Relative change of the true mechanical energy, or the error of the run.
     pub change: Result<f64, String>,
 }
 
@@ -33,7 +33,7 @@ pub fn drift(method: Method, contacts: Contacts, setting: f64) -> Drift {
     let settings = Settings { max_steps: 48_000_000, ..runs::settings(method, contacts, setting) };
     let start = [0.0, 0.0, SSVI.d, SPEED];
     let mut seen = Touches { count: 0, enough: IMPACTS };
-    let end = runs::follow(&system, start, PATIENCE, &settings, &mut seen);
+    let end = runs::follow(&system, start, TIME_LIMIT, &settings, &mut seen);
     let change = end
         .map(|y| system.total_energy(&y) / system.total_energy(&start) - 1.0)
         .map_err(|error| error.to_string());

@@ -42,7 +42,7 @@ impl Observer<4> for Count<'_> {
     }
 }
 
-/// The impacts of a run with a given longest step.
+/// The impacts of a run with a limited step size.
 pub struct Missed {
     pub seen: u64,
     pub jumped: u64,
@@ -51,7 +51,7 @@ pub struct Missed {
 }
 
 impl Missed {
-    /// Of all impacts.
+    /// The fraction of all impacts that were missed.
     fn share(&self) -> f64 {
         self.jumped as f64 / (self.jumped + self.seen).max(1) as f64
     }
@@ -64,11 +64,11 @@ pub fn missed(case: &Case, method: Method, contacts: Contacts, step: f64) -> Any
         Settings { method, contacts, rtol: 1e-3, atol: 1e-6, step: Some(step), max_steps: 1_000_000 };
     let exact = Hybrid::new(&system, 1e-9, case.to, u64::MAX);
     let mut count = Count { system: &system, exact, seen: 0, jumped: 0 };
-    let said = follow(&system, system.rest(), case.to, &settings, &mut count).err();
-    Ok(Missed { seen: count.seen, jumped: count.jumped, said: said.map(|error| error.to_string()) })
+    let error = follow(&system, system.rest(), case.to, &settings, &mut count).err();
+    Ok(Missed { seen: count.seen, jumped: count.jumped, said: error.map(|error| error.to_string()) })
 }
 
-/// The SSVI, the same with stiffer contacts, and the TMD with a wall at a share of its steady stroke without walls.
+/// The two-sided scene, the near-rigid one, and the TMD with a wall at a fraction of its steady stroke without walls.
 pub fn subjects() -> Vec<Case> {
     let free = TMD.coupled();
     let swing = free.steady(free.bare().frequency()).stroke();
@@ -93,7 +93,7 @@ pub fn table() -> Any<String> {
                 for step in STEPS {
                     let found = missed(case, method, contacts, step)?;
                     let noticed = match (&found.said, found.jumped) {
-                        (Some(said), _) => said.replace(',', ";"),
+                        (Some(error), _) => error.replace(',', ";"),
                         (None, 0) => "nothing missed".into(),
                         (None, _) => "no".into(),
                     };
@@ -107,7 +107,7 @@ pub fn table() -> Any<String> {
     Ok(text)
 }
 
-/// The methods that share a frame, and what they have in common.
+/// The methods that share a frame, with its title.
 const GROUPS: [(&str, &[Method]); 2] = [
     ("steps by an estimate", &[Method::Ode23, Method::Ode23s, Method::Dop853, Method::Ode45]),
     ("fixed steps", &[Method::Euler, Method::Rk4]),
@@ -116,16 +116,16 @@ const GROUPS: [(&str, &[Method]); 2] = [
 /// The chart of the table.
 pub fn draw(path: &Path, table: &str) -> Any<()> {
     let rows = records(table);
-    // The share at each longest step of a method; lines end where it said that it failed.
+    // The missed fraction of a method at each longest step; a line ends where the method reports an error.
     let line = |scene: &str, way: &str, method: Method| {
         let way = if method == Method::Hybrid { "exact" } else { way };
         let own =
             |row: &&Record<'_>| [row["scene"], row["method"], row["contacts"]] == [scene, method.name(), way];
         let own: Vec<&Record<'_>> = rows.iter().filter(own).collect();
-        let said = |row: &&&Record<'_>| ["no", "nothing missed"].contains(&row["noticed"]);
+        let completed = |row: &&&Record<'_>| ["no", "nothing missed"].contains(&row["noticed"]);
         let points = own
             .iter()
-            .filter(said)
+            .filter(completed)
             .map(|row| (number(row, "longest_step_s"), 100.0 * number(row, "missed_share")));
         let points: Vec<(f64, f64)> = points.collect();
         let end = if points.len() < own.len() { ", then blows up" } else { "" };

@@ -27,7 +27,7 @@ fn stepped(method: Method, rtol: f64) -> Settings {
     settings(method, Contacts::Stepped, rtol)
 }
 
-/// The optimum that fminsearch finds under some settings, from a start.
+/// The optimum that fminsearch finds with these settings from a start.
 fn optimum(settings: Settings, start: &[f64; 4]) -> Any<Minimum> {
     let varied = Parameter::PAPER.to_vec();
     let objective = DesignObjective::new(SSVI.scene(), SSVI.damper(), varied, WINDOW, settings);
@@ -57,7 +57,7 @@ fn compared() -> Vec<(String, Settings)> {
     a.into_iter().map(hybrid).chain(b.into_iter().map(ode45)).chain(c.into_iter().map(ode23s)).collect()
 }
 
-/// The table of E1max, that of optima, and the chart.
+/// The table of E1max, the table of optima, and the chart.
 pub fn tables(chart: &Path) -> Any<[String; 2]> {
     let mut values = String::from("what,rtol,E1max_0_100_s_J,E1max_50_100_s_J\n");
     let mut lines: [Vec<(f64, f64)>; 3] = Default::default();

@@ -1,4 +1,4 @@
-//! The same difficulties under other people's integrators.
+//! The difficulties under third-party integrators.
 
 use super::{Cell, Truth, Verdict, judged, why_by_tolerance};
 use crate::runs::{self, Row};
@@ -6,7 +6,7 @@ use crate::scenes::Case;
 use crate::{comparison, system};
 use retune_solver::Contacts;
 
-/// A column: name, program (without its version), method, and how it meets contacts.
+/// A column: name, program (without its version), method, and treatment of contacts.
 pub struct Other {
     pub name: &'static str,
     program: &'static str,
@@ -14,10 +14,11 @@ pub struct Other {
     contacts: Contacts,
 }
 
-/// The tolerance of all.
+/// The tolerance of all runs.
 const RTOL: f64 = 1e-6;
 
-/// Implicit methods, of two families each with contacts located and stepped over; CVODE locates them as roots.
+/// Three implicit methods, each with contacts located and stepped over, and two of CVODE, which locates
+/// contacts as roots.
 pub const OTHERS: [Other; 8] = {
     const fn other(
         name: &'static str,

@@ -17,7 +17,7 @@ use retune_solver::{Contacts, Hybrid, Method, Motion, Phase};
 use std::fmt::Write;
 use std::path::Path;
 
-/// Flight up to a touch-down; the rest is ignored.
+/// Observes flight up to a touch-down and ignores the rest.
 struct Flight<'a> {
     peak: RunningMaximum<PrimaryEnergy<'a>>,
     last: Option<(f64, [f64; 4])>,
@@ -72,7 +72,7 @@ fn case(n: i32) -> Case {
     Case { name: "stiff", label: "", scene: stiffer(10f64.powi(n)).scene(), to: 10.0 }
 }
 
-/// Distance of the Hertzian motion at K × 10^n from the rigid one: E1max and final state, relative.
+/// Relative difference between the Hertzian motion at K × 10^n and the rigid one: E1max and final state.
 pub fn distance(n: i32) -> Any<[f64; 2]> {
     let case = case(n);
     let (e1_max, final_state) = rigid(case.to)?;
@@ -109,7 +109,7 @@ pub fn table() -> Any<String> {
     Ok(text)
 }
 
-/// The methods that share a frame, and what they have in common.
+/// The methods that share a frame, with its title.
 const GROUPS: [(&str, &[Method]); 2] = [
     ("explicit, steps by an estimate", &[Method::Dop853, Method::Ode45, Method::Ode23]),
     ("stiff, and fixed steps", &[Method::Ode23s, Method::Rk4, Method::Euler]),

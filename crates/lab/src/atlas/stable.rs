@@ -1,4 +1,4 @@
-//! The largest stable step on the scenes' own eigenvalues, measured on each method's own step and predicted by its stability
+//! The largest stable step for the eigenvalues of the scenes, measured with each method's own step and predicted by its stability
 //! function (E. Hairer & G. Wanner, Solving Ordinary Differential Equations II, 2nd ed. 1996, IV.2 and IV.7).
 
 use crate::panel::{Line, WIDTHS, look, panel, sheet};
@@ -31,7 +31,7 @@ impl System<4> for Frozen {
     }
 }
 
-/// Growth per step that is tolerated as rounding.
+/// Growth per step tolerated as rounding.
 const SLACK: f64 = 1e-7;
 
 /// Whether steps of length `h` grow, by the spectral radius of the step itself.
@@ -96,7 +96,7 @@ fn euler_grows_in_theory(a: &Matrix, h: f64) -> bool {
 fn grows_in_theory(method: Method, lambda: Complex<f64>, h: f64) -> bool {
     let z = lambda * h;
     let factor = match method {
-        Method::Hybrid => return false, // e^z: the flow itself
+        Method::Hybrid => return false, // e^z: the exact flow
         Method::Ode23s => {
             let d = 1.0 / (2.0 + std::f64::consts::SQRT_2);
             ((z * (1.0 - 2.0 * d) + 1.0) / (Complex::from(1.0) - z * d).powi(2)).norm()
@@ -125,7 +125,7 @@ pub fn moments() -> Any<Vec<Moment>> {
     for case in &cases() {
         let Some(system) = system(&case.scene) else {
             let (a, _) = Bare::new(&case.scene.primary, &case.scene.forcing).linear_part();
-            // Twice the same oscillator: the methods here take four components.
+            // Two copies of the oscillator, since the methods here take four components.
             let matrix = Matrix::from_fn(|i, j| if i / 2 == j / 2 { a[(i % 2, j % 2)] } else { 0.0 });
             all.push(Moment { name: format!("{}, flight", case.label), matrix });
             continue;

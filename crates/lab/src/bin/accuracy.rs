@@ -1,5 +1,5 @@
-//! `just lab accuracy`: every method on every scene at every tolerance, into `results/accuracy/`; `just lab accuracy draw` writes text, charts and
-//! manifest anew from its tables, and `just lab accuracy check` runs every row again and compares all but its time.
+//! `just lab accuracy`: every method on every scene at every tolerance, into `results/accuracy/`. `just lab accuracy draw` rewrites text,
+//! charts and manifest from its tables; `just lab accuracy check` reruns every row and compares everything but its time.
 #![allow(clippy::print_stderr)]
 
 use rayon::prelude::*;
@@ -75,7 +75,7 @@ fn draw(folder: &Path, cases: &[Case], references: &[Reference]) -> Any<()> {
     sealed::seal(folder, &methods::ACCURACY, plan, cases.iter())
 }
 
-/// Runs every row again, and tells those of which errors, counts or evaluations differ.
+/// Reruns every row and prints those whose errors, counts or evaluations differ.
 fn check(folder: &Path, cases: &[Case], references: &[Reference]) -> Any<()> {
     let rows = rows(folder, cases)?;
     let changed = |row: &Row| {

@@ -1,5 +1,5 @@
-//! `just lab hunt…`: many draws of what `cargo test` checks with few. Prints the table that stands in `results/robustness`, and after it, on
-//! the standard error, what must not be; then it ends with 1.
+//! `just lab hunt…`: many draws of what `cargo test` checks with few. Prints the table of `results/robustness`, then any faults on standard
+//! error; with faults the exit code is 1.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 use retune_lab::hunts::{durations, robust, scenes, walk, worst};
@@ -60,7 +60,7 @@ fn main() -> Any<ExitCode> {
         "repeats" => show(include_str!("../hunts/repeats.md"), repeats::repeats(number(42_000)?.into())),
         "peaks" => show(include_str!("../hunts/peaks.md"), peaks::peaks(number(3000)?)),
         "needs" => {
-            // A scan may lie nearer to a peak than the search of it ends.
+            // A scan may come closer to a peak than the search for it.
             let hunt = needs::needs(number(50)?.into(), 100.0, 2001, 1e-5);
             show(include_str!("../hunts/needs.md"), hunt);
         }

@@ -1,5 +1,5 @@
-//! `just lab stability`: every method on every difficulty, into `results/stability/`; `just lab stability check` makes all of it again and compares
-//! it byte for byte.
+//! `just lab stability`: every method on every difficulty, into `results/stability/`. `just lab stability check` recomputes everything and
+//! compares it byte for byte.
 
 use rayon::prelude::*;
 use retune_jobs::methods;
@@ -45,7 +45,7 @@ fn check(folder: &Path) -> Any<()> {
     }
 }
 
-/// Where CVODE finds the difficulties.
+/// The file from which CVODE reads the difficulties.
 const SCENES: &str = "target/difficulties.json";
 
 /// Writes all files.
@@ -95,7 +95,7 @@ fn seal(folder: &Path) -> Any<()> {
     sealed::seal(folder, &methods::STABILITY, plan, difficulties.iter().map(|difficulty| &difficulty.case))
 }
 
-/// Every difficulty with its cells under Retune's methods, the energy over 1,000 impacts last; and under other people's integrators.
+/// The rows of Retune's methods, the energy over 1,000 impacts last, and the rows of third-party integrators.
 fn rows() -> Any<(Vec<Row>, Vec<Row>)> {
     let all = difficulties::all()?;
     fs::write(SCENES, in_json(all.iter().map(|difficulty| &difficulty.case))?)?;
@@ -135,7 +135,7 @@ fn csv(ways: &[&str], rows: &[Row]) -> Result<String, std::fmt::Error> {
     Ok(table)
 }
 
-/// How often each method comes to each verdict.
+/// The number of verdicts of each kind for each method.
 fn totals(ways: &[&str], rows: &[Row]) -> Result<String, std::fmt::Error> {
     let count = |j: usize, verdict| rows.iter().filter(|r| r.2[j].verdict == verdict).count();
     let mut text = String::from(

@@ -18,9 +18,9 @@ use std::time::Instant;
 const OPTIMUM: &str = "results/ssvi/optimum.json";
 const STUDY: &str = "studies/ssvi.json";
 const RESTITUTIONS: [f64; 9] = [1.0, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3];
-/// Hertz's K over that of the study.
+/// Hertz's K relative to that of the study.
 const STIFFNESSES: [f64; 5] = [0.1, 0.3, 1.0, 3.0, 10.0];
-/// How often a cost is measured: the least counts.
+/// Number of measurements of a cost, of which the least is used.
 const REPEATS: usize = 5;
 
 /// The models of a wall, from the smallest to the largest.
@@ -32,7 +32,7 @@ enum Wall {
     Lossless,
     /// Hertz with Hunt and Crossley's λ.
     Damped,
-    /// Hertz with the restitution at every speed: what the others are compared with.
+    /// Hertz with the restitution at every speed: the reference.
     Full,
 }
 
@@ -48,7 +48,7 @@ impl Wall {
         }
     }
 
-    /// A scene with this wall; one λ has the restitution at the speed `at` (m/s).
+    /// A scene with this wall; λ is chosen to give the restitution at the speed `at` (m/s).
     fn of(self, scene: &Scene, stiffness: f64, e: f64, at: Positive) -> Any<Scene> {
         let mut scene = *scene;
         let Some(Damper { contact: Some(contact), .. }) = &mut scene.damper else {
@@ -86,7 +86,7 @@ fn impact_speed(study: &Study) -> Any<Positive> {
     Ok(Positive::new(walls.iter().map(|wall| wall.speed).fold(0.0, f64::max))?)
 }
 
-/// What the models find at one stiffness and restitution, J.
+/// The results of the models at one stiffness and restitution, J.
 struct Point {
     stiffness: f64,
     e: f64,
@@ -132,7 +132,7 @@ fn main() -> Any<()> {
     Ok(())
 }
 
-/// Processor time of an evaluation at the study's stiffness with e = 0.7, over that without loss, on one thread: the least of several.
+/// CPU time of an evaluation at the study's stiffness with e = 0.7, relative to that without loss, on one thread: the least of several.
 fn costs(study: &Study, at: Positive) -> Any<[f64; 4]> {
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let mut least = [f64::INFINITY; 4];

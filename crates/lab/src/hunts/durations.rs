@@ -1,4 +1,4 @@
-//! How long a run takes whatever its numbers: no scene may take longer than somebody waits.
+//! Run times for extreme parameters: no scene may take longer than a user would wait.
 
 use super::scenes;
 use cpu_time::ThreadTime;
@@ -7,11 +7,11 @@ use retune_solver::{Settings, SolverError, Window, simulate};
 use retune_testkit::hunt::Hunt;
 use std::time::Duration;
 
-/// The longest time of a run, whether it ends with its answer or with a message.
+/// The longest time allowed for a run, whether it ends with a result or an error.
 const ALLOWED: Duration = Duration::from_secs(2);
 
-/// Runs of 100 s with default settings, every quantity observed, over 6, 10.5 and 15 orders of magnitude about the paper's numbers. Times
-/// are those of the thread.
+/// Runs of 100 s with default settings and every quantity observed, over 6, 10.5 and 15 orders of magnitude about the paper's numbers.
+/// Times are CPU times of the thread.
 pub fn durations(count: usize) -> Hunt {
     let settings = Settings::default();
     let run = |scene: &_| {

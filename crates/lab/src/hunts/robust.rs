@@ -1,4 +1,5 @@
-//! Verdicts "robust" beside a look from many more starts: perturbed designs of `results`, gaps drawn anew, other structures with scaled designs.
+//! Compares verdicts "robust" with a search from many more starts: perturbed designs of `results`, other gaps, and other structures with
+//! scaled designs.
 
 use crate::Any;
 use retune_dynamics::periodic::branches::{Plan, SPACINGS};
@@ -20,17 +21,18 @@ const DESIGNS: [[f64; 4]; 6] = [
     [450.0, 127.16801305531861, 1.0403638044998134, 0.0],
     [597.2737982898645, 95.72415913882642, 0.647212882590036, 0.03740508433492577],
 ];
-/// Frequencies from rest and other starts for each, of the harder look: it has all starts of the certificate's, and eight times as many.
-const HARD: [usize; 2] = [61, 66];
+/// Frequencies of runs from rest, and other starts for each, of the denser search: it includes all starts of the certificate, and has eight
+/// times as many.
+const DENSE_SEARCH: [usize; 2] = [61, 66];
 
-/// A design of a family, by a draw.
+/// A function that draws a design of a family.
 type Draw = fn(&mut dyn FnMut() -> f64) -> Vec<Setting>;
 
 fn pick(u: &mut dyn FnMut() -> f64) -> [f64; 4] {
     DESIGNS[(u() * DESIGNS.len() as f64) as usize % DESIGNS.len()]
 }
 
-/// Within a tenth.
+/// A design of `results` with each parameter perturbed by up to a tenth.
 fn perturbed(u: &mut dyn FnMut() -> f64) -> Vec<Setting> {
     let design = pick(u);
     Parameter::PAPER
@@ -40,14 +42,14 @@ fn perturbed(u: &mut dyn FnMut() -> f64) -> Vec<Setting> {
         .collect()
 }
 
-/// The wider gap anywhere from 0.4 to 1.2 m.
+/// A design of `results` with its wider gap drawn from 0.4 to 1.2 m.
 fn far_gap(u: &mut dyn FnMut() -> f64) -> Vec<Setting> {
     let mut design = pick(u);
     design[if design[2] > design[3] { 2 } else { 3 }] = 0.4 + 0.8 * u();
     Parameter::PAPER.into_iter().zip(design).map(|(name, value)| Setting::new(name, value)).collect()
 }
 
-/// A structure of other damping and a damper of other mass, lengths and forces scaled alike.
+/// A structure with other damping and a damper with other mass; lengths and the force are scaled by one factor.
 fn structure(u: &mut dyn FnMut() -> f64) -> Vec<Setting> {
     let [k2, c2, d, c] = pick(u);
     let (mass, size) = (0.7 + 0.6 * u(), 0.5 + u());
@@ -63,7 +65,7 @@ fn structure(u: &mut dyn FnMut() -> f64) -> Vec<Setting> {
     ]
 }
 
-/// Certifies designs of each family, by their numbers.
+/// Certifies the designs of each family with these numbers.
 pub fn robust(designs: Range<u32>) -> Any<Hunt> {
     let mut study = retune_study::read(Path::new("studies/ssvi-isola.json"))?;
     // Draws lie beyond the bounds of the search.
@@ -94,11 +96,11 @@ pub fn robust(designs: Range<u32>) -> Any<Hunt> {
                 _ => 3,
             };
             counts[place] += 1;
-            let own = study.energy(&study.scene).ok_or("no value")?;
-            let most = if place == 0 { hard(&study)? } else { 0.0 };
-            if most > 1.05 * own {
+            let from_rest = study.energy(&study.scene).ok_or("no value")?;
+            let most = if place == 0 { largest_energy(&study)? } else { 0.0 };
+            if most > 1.05 * from_rest {
                 counts[4] += 1;
-                hunt.faults.push(format!("{name}, draw {number}: {most} J for {own} J"));
+                hunt.faults.push(format!("{name}, draw {number}: {most} J for {from_rest} J"));
             }
         }
         times.sort_by(f64::total_cmp);
@@ -112,9 +114,9 @@ pub fn robust(designs: Range<u32>) -> Any<Hunt> {
     Ok(hunt)
 }
 
-/// The largest energy of all motions that the harder look finds.
-fn hard(study: &Study) -> Any<f64> {
-    let [samples, starts] = HARD;
+/// The largest energy of all motions that the denser search finds.
+fn largest_energy(study: &Study) -> Any<f64> {
+    let [samples, starts] = DENSE_SEARCH;
     let over = Plan::over(Parameter::Omega, [5.0, 8.0]);
     let plan = Plan { samples, starts, passes: SPACINGS.len(), ..over };
     let found = motions(&study.scene, plan, &study.solver.settings(), &[Measure::Energy])?;

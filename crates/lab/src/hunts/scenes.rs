@@ -1,4 +1,4 @@
-//! Scenes of all kinds for the comparison with DOP853, drawn as the tests of the solver draw theirs.
+//! Random scenes for the comparison with DOP853, drawn as in the tests of the solver.
 
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
@@ -6,7 +6,7 @@ use proptest::test_runner::{RngSeed, TestRunner};
 use retune_model::Scene;
 use retune_testkit::anything::{Anything, DRAWS};
 
-/// So many scenes with dampers, their parameters over 6, 10.5 and 15 orders of magnitude about the paper's.
+/// `count` scenes with dampers, with parameters over 6, 10.5 and 15 orders of magnitude about the paper's.
 pub fn drawn(count: usize) -> Vec<Scene> {
     let config = ProptestConfig { rng_seed: RngSeed::Fixed(7), ..ProptestConfig::default() };
     let mut runner = TestRunner::new(config);

@@ -1,4 +1,4 @@
-//! A search for scenes where the hybrid is worst beside general methods.
+//! Searches for scenes where the hybrid is slowest relative to general methods.
 
 use crate::decades;
 use crate::runs::{self, way, ways};
@@ -12,18 +12,18 @@ use retune_solver::{Contacts, Method, Settings, Window, e1_max, touch_downs};
 use retune_testkit::hunt::Hunt;
 use std::ops::ControlFlow;
 
-/// The relative error of E1max that all come to.
+/// The relative error of E1max that all methods must reach.
 const LEVEL: f64 = 1e-6;
 const WINDOW: Window = Window { from: 0.0, to: 10.0 };
-/// Those of explicit methods that were the best on some scene of `just lab accuracy`.
+/// The explicit methods that were the best on some scene of `just lab accuracy`.
 const GENERAL: [Method; 3] = [Method::Dop853, Method::Ode45, Method::Rk4];
-/// With more of them they would be slower than the hybrid by far.
+/// Most steps of a general method: with more it would be far slower than the hybrid.
 const MOST_STEPS: u64 = 30_000;
-/// Scenes that are followed and told, and the values of each simplex.
-const KEPT: usize = 2;
-const VALUES: u64 = 60;
+/// Number of scenes that are refined and reported, and most evaluations of each simplex.
+const CLIMBS: usize = 2;
+const MAX_VALUES: u64 = 60;
 
-/// An engineer's dampers and forces, with contacts a hundredth to a hundred times as stiff as the paper's.
+/// Practical dampers and forces, with contacts a hundredth to a hundred times as stiff as the paper's.
 fn space() -> Space {
     let [m2, k2, c2] = [(10.0, 200.0), (50.0, 1e5), (5.0, 5000.0)];
     let [d, c, q] = [(0.0, 0.2), (0.01, 1.0), (0.01 * SSVI.q, 100.0 * SSVI.q)];
@@ -32,7 +32,7 @@ fn space() -> Space {
     Space([m2, k2, c2, d, c, q, omega, e, p].map(side).into())
 }
 
-/// In three digits, so that what is told is the scene.
+/// Rounded to three digits, so that the reported numbers define the scene.
 fn numbers(u: &[f64], lossy: bool) -> Numbers {
     let x = space().point(u).into_iter().map(|value| format!("{value:.2e}").parse().unwrap_or(value));
     let x: Vec<f64> = x.collect();
@@ -40,22 +40,23 @@ fn numbers(u: &[f64], lossy: bool) -> Numbers {
     Numbers { m2: x[0], k2: x[1], c2: x[2], d: x[3], c: x[4], q: x[5], omega: x[6], e, p: x[8], ..SSVI }
 }
 
-/// Steps of the hybrid are those of flight, too.
+/// The hybrid also counts flight steps, so it has another limit.
 fn of(method: Method, contacts: Contacts, tolerance: f64) -> Settings {
     let most = if method == Method::Hybrid { runs::MOST_STEPS } else { MOST_STEPS };
     settings(method, contacts, tolerance, most)
 }
 
-/// The loosest tolerance at which a method comes to the level, and the least processor time of some runs, s. A tolerance that does so by luck, while the
-/// next tighter one does not, does not count.
+/// The loosest tolerance at which a method reaches the level, and the least CPU time of `times` runs, s. A tolerance counts only if the
+/// next tighter one also reaches it, which excludes luck.
 fn fit(scene: &Scene, reference: f64, (method, contacts): (Method, Contacts), times: u32) -> Option<Fit> {
     let tolerances = if method.has_fixed_step() { vec![3e-3, 1e-3, 3e-4] } else { decades(3, 9) };
     let run = |tolerance| e1_max(scene, WINDOW, &of(method, contacts, tolerance), f64::INFINITY);
-    let serves = |tolerance| run(tolerance).is_ok_and(|found| (found.value / reference - 1.0).abs() <= LEVEL);
-    let mut served = None;
+    let meets_level =
+        |tolerance| run(tolerance).is_ok_and(|found| (found.value / reference - 1.0).abs() <= LEVEL);
+    let mut met = None;
     let tolerance = tolerances.into_iter().find_map(|tolerance| {
-        let looser = std::mem::replace(&mut served, serves(tolerance).then_some(tolerance));
-        served.and(looser)
+        let looser = std::mem::replace(&mut met, meets_level(tolerance).then_some(tolerance));
+        met.and(looser)
     })?;
     let timed = |_| {
         let begun = ThreadTime::now();
@@ -66,8 +67,8 @@ fn fit(scene: &Scene, reference: f64, (method, contacts): (Method, Contacts), ti
 }
 type Fit = (Settings, f64);
 
-/// The hybrid and the best of the general methods; none where no wall is touched, or where DOP853 does not confirm the hybrid at a tight tolerance: there
-/// the motion cannot be predicted.
+/// The hybrid and the best general method; none if no wall is touched, or if DOP853 does not confirm the hybrid at a tight tolerance, so
+/// that the motion cannot be predicted.
 fn both(scene: &Scene, times: u32) -> Option<[Fit; 2]> {
     let tight = |method| of(method, Contacts::Located, 1e-12);
     let value = |method| e1_max(scene, WINDOW, &tight(method), f64::INFINITY).ok().map(|found| found.value);
@@ -82,7 +83,7 @@ fn both(scene: &Scene, times: u32) -> Option<[Fit; 2]> {
     Some([each(Method::Hybrid).next()?, best])
 }
 
-/// Random draws without loss and with it, from the worst of which a simplex climbs.
+/// Draws scenes without and with loss; a simplex search starts from the worst of each.
 pub fn worst(draws: u32) -> Hunt {
     let mut hunt = Hunt::default();
     for lossy in [false, true] {
@@ -92,22 +93,23 @@ pub fn worst(draws: u32) -> Hunt {
 }
 
 fn climb(draws: u32, lossy: bool, hunt: &mut Hunt) {
-    let rated = |u: &[f64]| {
+    let log_ratio = |u: &[f64]| {
         both(&numbers(u, lossy).scene(), 3).map_or(f64::INFINITY, |both| (both[1].1 / both[0].1).ln())
     };
     let draw = |number| -> Vec<f64> { (0..9).map(|i| sobol_burley::sample(number, i, 1).into()).collect() };
-    let mut drawn: Vec<_> = (0..draws).into_par_iter().map(|number| (rated(&draw(number)), number)).collect();
+    let mut drawn: Vec<_> =
+        (0..draws).into_par_iter().map(|number| (log_ratio(&draw(number)), number)).collect();
     drawn.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let compared = drawn.iter().filter(|(rated, _)| rated.is_finite()).count();
-    let slower = drawn.iter().filter(|(rated, _)| *rated < 0.0).count();
+    let compared = drawn.iter().filter(|(log_ratio, _)| log_ratio.is_finite()).count();
+    let slower = drawn.iter().filter(|(log_ratio, _)| *log_ratio < 0.0).count();
     let bounds = vec![Bounds { lower: Some(0.0), upper: Some(1.0) }; 9];
-    let options = Options { max_fun_evals: Some(VALUES), bounds, ..Options::default() };
+    let options = Options { max_fun_evals: Some(MAX_VALUES), bounds, ..Options::default() };
     let best = |&(_, number): &(f64, u32)| {
         let start = draw(number);
-        minimize(|u, _| rated(u), &start, options.clone(), |_| ControlFlow::Continue(()))
+        minimize(|u, _| log_ratio(u), &start, options.clone(), |_| ControlFlow::Continue(()))
             .map_or(start, |found| found.x)
     };
-    let climbed: Vec<_> = drawn[..KEPT.min(compared)].par_iter().map(best).collect();
+    let climbed: Vec<_> = drawn[..CLIMBS.min(compared)].par_iter().map(best).collect();
     let loss = if lossy { "with a restitution" } else { "without loss" };
     hunt.row(format!(
         "\nOf {draws} draws {loss} {compared} touch a wall and can be predicted; the hybrid is slower on {slower}.\n\n{HEAD}"

@@ -54,7 +54,7 @@ impl Solout<f64, State> for Control<'_, '_> {
     {
         if let (Some(track), true) = (self.track.as_deref_mut(), t > self.shown) {
             let open = self.equations.open(y);
-            // A step beyond the end of the phase is cut by the event, and passed on up to there.
+            // A step beyond the end of the phase is truncated at the event and then passed on.
             if open[0] >= 0.0 && open[1] >= 0.0 {
                 track.step(self.equations, [self.shown, t], |s| {
                     interpolator.interpolate(s).unwrap_or([f64::NAN; 4])

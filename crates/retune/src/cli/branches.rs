@@ -44,7 +44,7 @@ pub struct Branches {
     pub running: Running,
 }
 
-/// What motions may be followed along.
+/// Names of the parameters along which motions may be followed.
 fn parameters() -> Vec<String> {
     Parameter::differentiable(" ").split(' ').map(str::to_owned).collect()
 }

@@ -1,4 +1,4 @@
-//! The options that mean the same of every command that computes.
+//! The options shared by all commands that compute.
 
 use crate::screen::Screen;
 use clap::Args;

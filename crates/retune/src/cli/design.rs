@@ -97,7 +97,7 @@ pub struct Design {
     pub running: Running,
 }
 
-/// What a shell completes.
+/// Shell completions.
 fn goals() -> Vec<String> {
     Measure::OF_STRUCTURE.map(|measure| measure.name().to_owned()).to_vec()
 }
@@ -121,7 +121,7 @@ Examples:
   retune design studies/examples/building.json --limit stroke=250mm";
 
 impl Design {
-    /// What is asked: its fields have the names of the options.
+    /// The requirements; the fields have the names of the options.
     pub fn specification(&self) -> Result<Specification, Error> {
         let refused = |error: serde_json::Error| Error::Requirement {
             place: "command line".to_owned(),

@@ -1,4 +1,4 @@
-//! Values with names that a shell completes. What is typed is parsed, and refused, in the library's words.
+//! Arguments whose values a shell completes. The library parses them and words the errors.
 
 use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Arg, Command, Error};
@@ -6,7 +6,7 @@ use std::ffi::OsStr;
 use std::marker::PhantomData;
 use std::str::FromStr;
 
-/// A parser of `T` with the names that a shell completes.
+/// A parser of `T` that offers names for shell completion.
 #[derive(Clone)]
 pub struct Named<T> {
     names: fn() -> Vec<String>,
@@ -14,7 +14,7 @@ pub struct Named<T> {
 }
 
 impl<T> Named<T> {
-    /// A parser that a shell completes with these names.
+    /// A parser that offers these names.
     pub const fn new(names: fn() -> Vec<String>) -> Self {
         Self { names, of: PhantomData }
     }

@@ -47,17 +47,17 @@ pub struct Sweep {
     pub running: Running,
 }
 
-/// What may be swept.
+/// Names of the parameters that may be swept.
 fn parameters() -> Vec<String> {
     Parameter::ALL.map(|parameter| parameter.symbol().to_owned()).to_vec()
 }
 
-/// What may be shown.
+/// Names of the quantities that may be shown.
 fn quantities() -> Vec<String> {
     Quantity::all().map(|quantity| quantity.name().to_owned()).collect()
 }
 
-/// What `--quantity` is for.
+/// The help of `--quantity`.
 fn about_quantities() -> String {
     let names = quantities();
     format!(

@@ -15,17 +15,17 @@ const TITLE: &str = "retune-journal-2";
 /// Longest valid line, bytes.
 const LONGEST: usize = 1024;
 
-/// Most points of a grid that a journal holds.
+/// Most grid points that a journal holds.
 pub const MOST_POINTS: usize = 10_000_000;
 
 /// The contents of a journal.
 #[derive(Debug, Default)]
 pub struct Known {
     pub(super) values: HashMap<Key, f64>,
-    /// The values of the points of the grid; NaN where one is not known.
+    /// The values of the grid points; NaN where not known.
     pub(super) grid: Vec<f64>,
     pub(super) marks: HashSet<String>,
-    /// The directories below that the work has begun searches in.
+    /// The subdirectories in which the work began searches.
     pub parts: BTreeSet<String>,
     /// Number of its values and marks.
     pub lines: u64,
@@ -34,7 +34,7 @@ pub struct Known {
 /// Damage to a journal that can still be continued.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Damage {
-    /// Whether its first line, which names its work, is damaged.
+    /// Whether the first line, which identifies the work, is damaged.
     pub head: bool,
     /// Number of damaged lines.
     pub lines: u64,
@@ -50,16 +50,16 @@ impl Damage {
 /// The state of a journal's file.
 #[derive(Debug)]
 pub enum State {
-    /// Nothing, not even a first line.
+    /// No file, or an empty one.
     Nothing,
-    /// A file that cannot be attributed to a work, and why.
+    /// The work cannot be identified, for this reason.
     Unclear(&'static str),
     /// The journal of a work: its identity, its contents and its damage.
     Work(Identity, Box<Known>, Damage),
 }
 
-/// Reads a journal. Where its first line is damaged, its records tell whether it is of the work `ours`.
-pub fn read(path: &Path, ours: &Identity) -> std::io::Result<State> {
+/// Reads a journal. If its first line is damaged, its records tell whether it belongs to the work `identity`.
+pub fn read(path: &Path, identity: &Identity) -> std::io::Result<State> {
     let mut lines = BufReader::new(match plain::open(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(State::Nothing),
         other => other?,
@@ -69,16 +69,16 @@ pub fn read(path: &Path, ours: &Identity) -> std::io::Result<State> {
         return Ok(State::Nothing);
     }
     let head = head(&line);
-    let of = head.clone().unwrap_or_else(|| ours.clone());
+    let of = head.clone().unwrap_or_else(|| identity.clone());
     let seal = Seal::of(&of);
     let mut known = Known::default();
     let mut damage = Damage { head: head.is_none(), lines: 0 };
     if head.is_none() {
-        // Cut off at the front, it begins with a record, or the rest of one.
-        seal.open(&line).and_then(|text| known.learn(text));
+        // If its beginning is lost, the first line is a record or part of one.
+        seal.open(&line).and_then(|text| known.add_record(text));
     }
     while next(&mut lines, &mut line)? {
-        if seal.open(&line).and_then(|text| known.learn(text)).is_some() {
+        if seal.open(&line).and_then(|text| known.add_record(text)).is_some() {
             continue;
         }
         match self::head(&line) {
@@ -97,7 +97,7 @@ pub fn read(path: &Path, ours: &Identity) -> std::io::Result<State> {
     Ok(State::Work(of, Box::new(known), damage))
 }
 
-/// Replaces a damaged journal: a first line, and every complete record. The old file stays until the new one is complete.
+/// Rewrites a damaged journal with a new first line and every complete record. The old file stays until the new one is complete.
 pub fn mend(path: &Path, identity: &Identity) -> Result<(), Error> {
     let refuse = |source| Error::Output { path: path.to_owned(), source };
     let mut lines = BufReader::new(plain::open(path).map_err(refuse)?);
@@ -122,7 +122,7 @@ fn head(line: &[u8]) -> Option<Identity> {
     Identity::parse(Seal::plain().open(line)?.strip_prefix(TITLE)?.strip_prefix(' ')?)
 }
 
-/// Reads the next line with its end, of one that is too long only the beginning. False at the end of the file.
+/// Reads the next line with its line end; only the beginning of one that is too long. False at the end of the file.
 fn next(file: &mut impl BufRead, line: &mut Vec<u8>) -> std::io::Result<bool> {
     line.clear();
     loop {
@@ -141,7 +141,7 @@ fn next(file: &mut impl BufRead, line: &mut Vec<u8>) -> std::io::Result<bool> {
 }
 
 impl Known {
-    fn learn(&mut self, text: &str) -> Option<()> {
+    fn add_record(&mut self, text: &str) -> Option<()> {
         let (kind, rest) = text.split_once(' ')?;
         let is_new = match kind {
             "g" => {
@@ -164,7 +164,7 @@ impl Known {
         Some(())
     }
 
-    /// Sets the value of a point; whether it was not known. None if there can be no such point.
+    /// Sets the value of a grid point; returns whether it was unknown. None if the index is out of range.
     pub(super) fn set_grid(&mut self, point: usize, value: f64) -> Option<bool> {
         if point >= self.grid.len() {
             (point < MOST_POINTS).then(|| self.grid.resize(point + 1, f64::NAN))?;

@@ -3,10 +3,10 @@
 use crate::identity::{Identity, hexadecimal};
 use sha2::{Digest, Sha256};
 
-/// Half of a SHA-256: the stage, the design and the cutoff.
+/// Half of the SHA-256 of stage, design and cutoff.
 pub type Key = [u8; 16];
 
-/// The text of the line of a point of the grid.
+/// The text of a grid point's line.
 pub fn grid_text(point: usize, value: f64) -> String {
     format!("g {point} {:016x}", value.to_bits())
 }
@@ -39,7 +39,7 @@ pub fn key(stage: &str, design: &[f64], cutoff: f64) -> Key {
 pub struct Seal(Sha256);
 
 impl Seal {
-    /// For lines that name their work themselves, and for files that are checked as a whole.
+    /// For lines that identify their work themselves, and for files that are checked as a whole.
     pub fn plain() -> Self {
         Self(Sha256::new())
     }

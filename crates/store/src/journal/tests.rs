@@ -12,7 +12,7 @@ impl Desk {
         self.0.path().join("journal")
     }
 
-    /// Opens the journal as a resumed run does; none if nobody can tell whose it is.
+    /// Opens the journal as a resumed run does; none if its work cannot be identified.
     fn try_open(&self) -> Option<(Journal, Damage)> {
         let identity = Identity::of("study");
         let journal = match read(&self.path(), &identity).expect("a journal") {
@@ -37,7 +37,7 @@ impl Desk {
         std::fs::write(self.path(), bytes).expect("a file");
     }
 
-    /// The lines, sorted: what was computed again stands at the end.
+    /// The lines, sorted, because recomputed values are appended at the end.
     fn lines(&self) -> Vec<String> {
         let mut lines: Vec<String> =
             String::from_utf8(self.bytes()).expect("text").lines().map(str::to_owned).collect();
@@ -50,7 +50,7 @@ impl Desk {
     }
 }
 
-/// Asks for `count` values of two stages and of a grid; says how many had to be computed.
+/// Requests `count` values of two stages and of a grid; returns how many had to be computed.
 fn ask(journal: &Journal, count: usize) -> usize {
     let computed = Cell::new(0);
     let compute = |value: f64| {
@@ -95,7 +95,7 @@ fn whole() -> (Desk, Vec<u8>, Vec<String>) {
     (desk, bytes, lines)
 }
 
-/// The places where a journal that is damaged there is mended, which takes its time: both sides of each end of a line, and every third.
+/// The positions whose damage is repaired, which takes time: both sides of each line end, and every third position.
 fn is_looked_at(whole: &[u8], place: usize) -> bool {
     let ends = |place: usize| whole.get(place) == Some(&b'\n');
     place.is_multiple_of(3) || ends(place) || ends(place.wrapping_sub(1)) || place == whole.len()
@@ -129,7 +129,7 @@ fn contract_a_journal_cut_anywhere_goes_on() {
     }
 }
 
-/// A flipped bit costs at most the record it falls into and, where it joins two lines, the next; it is always told.
+/// A flipped bit costs at most the record it hits and, where it joins two lines, the next one; it is always reported.
 #[test]
 fn contract_any_flipped_bit_is_told_and_costs_no_more_than_its_record() {
     let (desk, whole, lines) = whole();
@@ -145,7 +145,7 @@ fn contract_any_flipped_bit_is_told_and_costs_no_more_than_its_record() {
             assert!(!damage.is_none() && known.lines + most >= 12, "byte {place}, bit {bit}");
             assert_eq!(damage.head, place <= head, "byte {place}, bit {bit}");
             if bit != place % 8 || !is_looked_at(&whole, place) {
-                continue; // to mend it takes its time
+                continue; // repair is slow
             }
             let (journal, _) = desk.try_open().expect("a journal");
             assert_eq!(ask(&journal, 3) as u64, 12 - known.lines, "byte {place}, bit {bit}");
@@ -186,7 +186,7 @@ fn contract_what_no_flip_makes_is_survived_as_well() {
     }
 }
 
-/// Values are known by their design, not by their study: those of another must never be answered.
+/// Values are looked up by design, not by study: those of another study must never be returned.
 #[test]
 fn contract_the_work_of_another_study_is_never_believed() {
     let (desk, whole, _) = whole();
@@ -262,7 +262,7 @@ fn contract_a_file_that_is_no_journal_is_left_alone() {
     }
 }
 
-/// A journal is read and written under a name that anyone can guess.
+/// The file name of a journal can be guessed.
 #[cfg(unix)]
 #[test]
 fn contract_no_link_is_followed() {

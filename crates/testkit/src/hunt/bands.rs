@@ -1,5 +1,5 @@
-//! The worst over a band against a search that shares nothing with it: the response in twice the precision, on grids that
-//! close in on every frequency where a peak may be, each local maximum sharpened by golden sections.
+//! Checks the worst over a band against an independent search: the response in twice the precision, on grids refined towards every
+//! frequency where a peak may be, and golden sections at each local maximum.
 
 use super::Hunt;
 use super::twofold::Twofold;
@@ -11,7 +11,7 @@ use retune_model::{Amplitude, Bare, Coupled, Measure, Scene, Worst};
 struct Quantity {
     of: Measure,
     bare: bool,
-    /// What the amplitude `p` of a scene is of.
+    /// The forcing whose amplitude is `p` of a scene.
     forcing: Amplitude,
 }
 
@@ -21,7 +21,7 @@ fn quantities() -> Vec<Quantity> {
     all.flat_map(|forcing| QUANTITIES.map(|quantity| Quantity { forcing, ..quantity })).collect()
 }
 
-/// Those under a force.
+/// The compared quantities under a force.
 const QUANTITIES: [Quantity; 11] = [
     with_damper(Measure::Energy),
     with_damper(Measure::Displacement),
@@ -44,8 +44,8 @@ const fn bare(of: Measure) -> Quantity {
     Quantity { of, bare: true, forcing: Amplitude::Force }
 }
 
-/// The response at `centre + offset` rad/s, straight from equation (1): real and imaginary parts of
-/// `(k1 - m1 ω² + iω c1)(k2 - m2 ω² + iω c2) - m2 ω² (k2 + iω c2)`.
+/// The response at `centre + offset` rad/s, directly from equation (1): real and imaginary parts of `(k1 - m1 ω² + iω c1)(k2 - m2 ω² +
+/// iω c2) - m2 ω² (k2 + iω c2)`.
 fn response(n: &Numbers, quantity: Quantity, centre: Twofold, offset: f64) -> f64 {
     let omega = centre + Twofold::from(offset);
     let u = omega * omega;
@@ -60,7 +60,7 @@ fn response(n: &Numbers, quantity: Quantity, centre: Twofold, offset: f64) -> f6
             Amplitude::Base => square(k1, c1).sqrt(),
             Amplitude::BaseAcceleration => square(k1, c1).sqrt() / u.value(),
         };
-    // On a moving ground the force is that by which the masses are accelerated.
+    // On a moving base the ground force is the inertial force of the masses.
     let is_inertia = quantity.of == Measure::GroundForce && quantity.forcing.is_of_base();
     let of_displacement = |amplitude2: f64| match quantity.of {
         Measure::Energy => 0.5 * p * p * n.k1.max((m1 * u).value()) * amplitude2,
@@ -87,7 +87,8 @@ fn response(n: &Numbers, quantity: Quantity, centre: Twofold, offset: f64) -> f6
     }
 }
 
-/// Frequencies near which a peak may be, rad/s: where real or imaginary part of the determinant is zero, and either body alone.
+/// Frequencies near which a peak may be, rad/s: zeros of the real or imaginary part of the determinant, and the natural frequencies of
+/// either body alone.
 fn centres(n: &Numbers) -> Vec<Twofold> {
     let [m1, c1, k1, m2, k2, c2] = [n.m1, n.c1, n.k1, n.m2, n.k2, n.c2].map(Twofold::from);
     let (a, b, c) = (m1 * m2, m1 * k2 + m2 * k1 + m2 * k2 + c1 * c2, k1 * k2);
@@ -110,14 +111,14 @@ fn centres(n: &Numbers) -> Vec<Twofold> {
     squares.into_iter().filter(|u| u.value() > 0.0).map(Twofold::sqrt).collect()
 }
 
-/// The largest over a band as the search finds it.
+/// The largest value over a band by the independent search.
 fn searched(n: &Numbers, quantity: Quantity, [from, to]: [f64; 2]) -> f64 {
     let mut largest = f64::NEG_INFINITY;
     let mut centres = centres(n);
     centres.push(Twofold::from(from));
     centres.push(Twofold::from(to));
     for centre in centres {
-        // Farther away an offset would be known less well than a frequency there.
+        // Farther away an offset would be less accurate than a frequency there.
         let size = centre.value();
         let below = (Twofold::from(from) - centre).value().max(-0.5 * size);
         let above = (Twofold::from(to) - centre).value().min(if size == from { to - from } else { size });
@@ -142,7 +143,7 @@ fn searched(n: &Numbers, quantity: Quantity, [from, to]: [f64; 2]) -> f64 {
             let value = if values[i].is_nan() { f64::INFINITY } else { values[i] };
             largest = largest.max(value);
             let (before, after) = (i.max(1) - 1, (i + 1).min(offsets.len() - 1));
-            // Only what is near the largest so far can come to be it.
+            // Only local maxima close to the largest value so far can exceed it.
             if value < values[before] || value < values[after] || value < 0.3 * largest {
                 continue;
             }
@@ -175,8 +176,7 @@ fn found(n: &Numbers, quantity: Quantity, band: [f64; 2]) -> Worst {
     }
 }
 
-/// Largest difference from the search, relative. A place of the response is known no better than the band is: an end of it may
-/// be off by 16 roundings.
+/// Largest relative difference from the independent search. The ends of the band may be off by 16 rounding errors.
 fn difference(n: &Numbers, quantity: Quantity, band @ [from, to]: [f64; 2]) -> f64 {
     let Worst { value, frequency } = found(n, quantity, band);
     assert!(from <= frequency && frequency <= to, "{n:?} {quantity:?} {band:?}: {frequency}");
@@ -192,7 +192,7 @@ fn difference(n: &Numbers, quantity: Quantity, band @ [from, to]: [f64; 2]) -> f
     } else {
         0.0
     };
-    // Without damping a resonance is infinite; the search comes as near to it as its numbers do.
+    // Without damping a resonance is infinite; the search gets as close to it as its arithmetic allows.
     let undamped = n.c1 == 0.0 && (n.c2 == 0.0 || quantity.bare);
     if undamped && value == f64::INFINITY && most > least_of_a_resonance(n, quantity) {
         return 0.0;
@@ -200,8 +200,8 @@ fn difference(n: &Numbers, quantity: Quantity, band @ [from, to]: [f64; 2]) -> f
     (value / most - 1.0).max(1.0 - value / least).max(0.0)
 }
 
-/// What a value near an infinite resonance exceeds: that of a static force, at the structure's own frequency, by the share to which the
-/// search comes near it.
+/// A lower bound of a value that the search finds near an infinite resonance: 1e10 times the static response (1e20 for an energy), as
+/// the search comes that close to the structure's own frequency.
 fn least_of_a_resonance(n: &Numbers, quantity: Quantity) -> f64 {
     let omega = (n.k1 / n.m1).sqrt();
     let still = match quantity.forcing {
@@ -250,7 +250,7 @@ fn draw(spread: &mut Spread) -> (Numbers, [f64; 2]) {
     (numbers, [from.min(to), from.max(to)])
 }
 
-/// So many dampers, each with a band of its own.
+/// Checks `count` dampers, each over a band of its own.
 pub fn bands(count: u64) -> Hunt {
     let threads = std::thread::available_parallelism().map_or(1, |n| n.get() as u64);
     let looked = |first: u64| {
@@ -282,7 +282,7 @@ pub fn bands(count: u64) -> Hunt {
     hunt
 }
 
-/// The largest difference of a damper's worst from the search, over all quantities that it has, relative.
+/// The largest relative difference between a damper's worst and the independent search, over all its quantities.
 pub fn largest_difference(numbers: &Numbers, band: [f64; 2]) -> f64 {
     let all = quantities().into_iter().filter(|quantity| !quantity.bare);
     all.map(|quantity| difference(numbers, quantity, band)).fold(0.0, f64::max)

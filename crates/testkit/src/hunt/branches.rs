@@ -1,4 +1,4 @@
-//! Runs from rest at many frequencies: what settles lies on a branch that was found.
+//! Runs from rest at many frequencies: a motion that settles must lie on a branch that was found.
 
 use super::Hunt;
 use crate::scenes::{Numbers, SSVI};
@@ -10,7 +10,7 @@ use retune_dynamics::periodic::{Branch, End, Orbit, branches};
 use retune_dynamics::{Parameter, Stretch, follow};
 use retune_solver::Settings;
 
-/// The paper's damper, both tuned ones, and one whose motions coexist.
+/// The paper's damper, both tuned ones, and one with coexisting motions.
 pub const DAMPERS: [Numbers; 4] = [
     SSVI,
     Numbers { k2: 583.9159, c2: 94.97076, d: 0.02885, c: 1.1045, ..SSVI },
@@ -24,8 +24,8 @@ pub const DAMPERS: [Numbers; 4] = [
     },
 ];
 
-/// Runs from rest at `count` frequencies of some dampers are followed in the search. What settles there on no known branch is a fault; and of as
-/// many runs between them hardly one may.
+/// Follows runs from rest at `count` frequencies as part of the search. A run there that settles on no known branch is a fault; of as many
+/// runs at frequencies in between, hardly any may.
 pub fn from_rest(dampers: &[Numbers], count: usize) -> Hunt {
     let mut hunt = Hunt::default();
     let (mut lost, mut between) = (Vec::new(), Vec::new());
@@ -93,13 +93,13 @@ pub fn from_rest(dampers: &[Numbers], count: usize) -> Hunt {
     ));
     hunt.row(format!("\n{} of those between them: {between:?}", between.len()));
     hunt.check(lost.is_empty(), || format!("on no known branch: {lost:?}"));
-    // Stable windows inside chaos narrower than the search's frequencies are apart.
+    // Stable windows inside chaos may be narrower than the spacing of the search's frequencies.
     hunt.check(between.len() <= 2 + count / 500, || format!("between the frequencies: {between:?}"));
     hunt
 }
 
-/// Branches of several periods come close to those of one where walls are nearly hard and a motion grazes. None goes over to a motion of a shorter
-/// period, followed several times over. The band is given in shares of the natural frequency.
+/// Where walls are nearly hard and a motion grazes, branches of several periods come close to those of one. Checks that none switches to a
+/// motion of a shorter period, traversed several times. The band is relative to the natural frequency.
 pub fn periods(stiffnesses: &[f64], band: [f64; 2]) -> Hunt {
     let mut hunt = Hunt::default();
     for &k1 in stiffnesses {
@@ -117,9 +117,9 @@ pub fn periods(stiffnesses: &[f64], band: [f64; 2]) -> Hunt {
     hunt
 }
 
-/// Which motions of a branch repeat after fewer periods than they count. Those at a period doubling at which it begins or ends nearly do: from there on
-/// the difference of their halves grows, with the root of the distance or, where an impact begins nearby, more slowly. On a motion of a
-/// shorter period it is nothing but the error of Newton's iteration.
+/// Which motions of a branch repeat after fewer periods than they count. Those next to a period doubling at an end of the branch nearly do
+/// and are excepted: the difference of their halves grows from there with the root of the distance or, if an impact begins nearby, more
+/// slowly. On a motion of a shorter period the difference is only the error of Newton's iteration.
 fn of_a_shorter_period(branch: &Branch) -> Vec<bool> {
     let gaps: Vec<f64> = branch.points.iter().map(least_gap).collect();
     let mut sooner: Vec<bool> = gaps.iter().map(|gap| *gap < SAME).collect();
@@ -137,10 +137,11 @@ fn of_a_shorter_period(branch: &Branch) -> Vec<bool> {
     sooner
 }
 
-/// Parts of a motion whose states differ by less than this share of its size are the same.
+/// Parts of a motion whose states differ by less than this fraction of its size count as equal.
 const SAME: f64 = 1e-6;
 
-/// The least difference between a motion and itself some periods later, of those that divide its own, as a share of its size; infinite for one period.
+/// The least difference between a motion and itself shifted by a proper divisor of its number of periods, relative to its size; infinite
+/// for one period.
 fn least_gap(Orbit { states, .. }: &Orbit) -> f64 {
     let n = states.len();
     let size = states.iter().flatten().fold(0.0_f64, |size, value| size.max(value.abs()));

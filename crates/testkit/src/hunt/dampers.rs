@@ -1,5 +1,5 @@
-//! Branches of dampers over an engineer's ranges, on structures that are not the paper's: whether each change of stability is named, and
-//! whether branches are followed to their ends.
+//! Branches of dampers over practical ranges, on other structures than the paper's: checks that every change of stability has a
+//! bifurcation, and that branches are followed to their ends.
 
 use super::Hunt;
 use crate::scenes::{Numbers, SSVI, Spread};
@@ -9,7 +9,7 @@ use retune_dynamics::periodic::{Branch, End, Event, EventKind, Orbit, branches};
 use retune_solver::Settings;
 use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
 
-/// A family: its name, and how a member is drawn.
+/// A family: its name, and a function that draws a member.
 type Family = (&'static str, fn(&mut Spread) -> Numbers);
 
 const FAMILIES: [Family; 12] = [
@@ -45,14 +45,14 @@ fn walls(s: &mut Spread) -> Numbers {
     Numbers { d: s.logarithmic(0.02, 0.5), c: s.logarithmic(0.02, 0.8), ..SSVI }
 }
 
-/// A spring between that of a bouncing damper and that of a tuned mass damper, a damping ratio from 1 to 100 %.
+/// Sets a spring between that of a bouncing damper and that of a tuned mass damper, and a damping ratio from 1 to 100 %.
 fn tuned(numbers: Numbers, s: &mut Spread) -> Numbers {
     let Numbers { m1, k1, m2, .. } = numbers;
     let k2 = k1 / m1 * m2 * s.logarithmic(0.08, 1.2);
     Numbers { k2, c2: 2.0 * s.logarithmic(0.01, 1.0) * (k2 * m2).sqrt(), ..numbers }
 }
 
-/// A damper of 1 to 10 % of the structure, with walls of the size of its motion at resonance.
+/// A damper of 1 to 10 % of the structure's mass, with gaps of the size of its motion at resonance.
 fn other(numbers: Numbers, s: &mut Spread) -> Numbers {
     let Numbers { m1, k1, c1, p, .. } = numbers;
     let size = p / (c1 * (k1 / m1).sqrt());
@@ -60,17 +60,17 @@ fn other(numbers: Numbers, s: &mut Spread) -> Numbers {
     tuned(Numbers { m2, d: size * s.logarithmic(0.1, 2.0), c: size * s.logarithmic(0.1, 4.0), ..numbers }, s)
 }
 
-/// What is counted.
+/// Counts over branches.
 #[derive(Clone, Copy, Debug, Default)]
 struct Count {
     branches: usize,
     points: usize,
     doubled: usize,
     closed: usize,
-    /// Neighbouring motions between which multipliers cross the unit circle and no bifurcation is named: of the first four of a doubled branch, in the
-    /// last two steps of a closed one, elsewhere.
+    /// Pairs of neighbouring motions between which multipliers cross the unit circle but no bifurcation is reported: among the first four
+    /// of a doubled branch, in the last two steps of a closed one, elsewhere.
     unnamed: [usize; 3],
-    /// Of these, where a grazing lies between.
+    /// How many of these have a grazing in between.
     grazing: usize,
     circles: usize,
     false_circles: usize,
@@ -144,8 +144,8 @@ fn is_on_circle(orbit: &Orbit) -> bool {
         .is_some_and(|(a, b)| a.im != 0.0 && b == a.conj() && off((a, b)) < 1e-5)
 }
 
-/// The motions after which the number of multipliers outside of the unit circle changes, by what the bifurcations named on the way do not tell, and
-/// whether a grazing is named there.
+/// The motions after which the number of multipliers outside the unit circle changes in a way that the reported bifurcations do not
+/// explain, and whether a grazing is reported there.
 pub fn unnamed(branch: &Branch) -> Vec<(usize, bool)> {
     let last = branch.points.len() - 1;
     let weight = |event: &Event| match event.kind {
@@ -153,7 +153,7 @@ pub fn unnamed(branch: &Branch) -> Vec<(usize, bool)> {
         EventKind::NeimarkSacker => 2,
         _ => 1,
     };
-    // At an event rounding decides on which side a motion is.
+    // At an event, rounding decides on which side of the unit circle a multiplier is.
     let at_event = |place: usize| {
         place == 0 && branch.ends[0] == End::Halved
             || place == last && branch.ends[1] == End::Halved
@@ -172,8 +172,7 @@ pub fn unnamed(branch: &Branch) -> Vec<(usize, bool)> {
     steps.collect()
 }
 
-/// `each` of every family is followed, each over at most `most` runs and motions: what is counted is counted along few long branches or many
-/// short ones.
+/// Follows `each` dampers of every family, each with at most `most` runs and motions, and so either few long branches or many short ones.
 pub fn dampers(each: usize, most: usize) -> Hunt {
     let mut hunt = Hunt::default();
     let mut all = Count::default();

@@ -1,5 +1,5 @@
-//! Strong dashpots: flights and contacts in long steps, without the fast part of the motion once it has decayed, beside the same in short steps that
-//! follow all of it.
+//! Strong dashpots: compares long steps, which drop the fast part of the motion once it has decayed, with short steps, which follow all of
+//! it.
 
 use super::Hunt;
 use crate::scenes::{Numbers, SSVI, Spread};
@@ -11,8 +11,8 @@ use retune_solver::observe::{
 };
 use retune_solver::{Hybrid, Motion, Settings, Window, simulate};
 
-/// A damper whose relative motion decays at 30 to 10,000 times the frequency of the force; one in four never touches a wall, and a wall holds
-/// one in eight half of the time.
+/// Draws a damper whose relative motion decays at 30 to 10,000 times the frequency of the force. One in four never touches a wall; one in
+/// eight is held to a wall half of the time.
 fn drawn(number: u64) -> Numbers {
     let mut draw = Spread::new(number + 11);
     let mut within = |low: f64, high: f64| low + (high - low) * draw.unit();
@@ -34,7 +34,7 @@ fn drawn(number: u64) -> Numbers {
     if number.is_multiple_of(8) {
         numbers.d = 0.0;
     }
-    // One in ten is free of the structure's own damping, or has so much that two parts are fast.
+    // In one in ten the structure has no damping; in another, so much that two parts of the motion are fast.
     match draw.unit() {
         0.0..0.1 => numbers.c1 = 0.0,
         0.9..1.0 => numbers.c1 = numbers.m1 * draw.logarithmic(10.0, 1e4),
@@ -46,10 +46,10 @@ fn drawn(number: u64) -> Numbers {
 /// Time of a run, s.
 const TO: f64 = 20.0;
 
-/// Largest values, the state reached, steps.
-type Seen = ([f64; 8], [f64; 4], u64);
+/// Largest values, final state, number of steps.
+type Observed = ([f64; 8], [f64; 4], u64);
 
-/// From no contact that it sees is anything left out.
+/// Requires, if true, that contacts are followed in full.
 struct FollowsContacts(bool);
 
 impl Observer<4> for FollowsContacts {
@@ -59,7 +59,7 @@ impl Observer<4> for FollowsContacts {
     }
 }
 
-fn seen<'a>(system: &'a Coupled, mut hybrid: Hybrid<'a>, follows: bool) -> Result<Seen, String> {
+fn observe<'a>(system: &'a Coupled, mut hybrid: Hybrid<'a>, follows: bool) -> Result<Observed, String> {
     let energies = (
         RunningMaximum::new(PrimaryEnergy::new(system), f64::INFINITY),
         RunningMaximum::new(DamperEnergy::new(system), f64::INFINITY),
@@ -83,10 +83,10 @@ fn seen<'a>(system: &'a Coupled, mut hybrid: Hybrid<'a>, follows: bool) -> Resul
     Ok(([e1, e2, far.record().value, near.record().value, x1, v1, a1, ground], end.y, hybrid.work.steps))
 }
 
-/// What both ways may differ by, relative to the larger.
-const ALIKE: f64 = 1e-9;
+/// Largest difference allowed between long and short steps, relative.
+const TOLERANCE: f64 = 1e-9;
 
-/// Both ways on `count` scenes of 20 s.
+/// Compares long and short steps on `count` scenes of 20 s.
 pub fn dashpots(count: u64) -> Hunt {
     let compared: Vec<_> = (0..count)
         .into_par_iter()
@@ -96,10 +96,11 @@ pub fn dashpots(count: u64) -> Hunt {
             let damper = scene.damper.as_ref().expect("a damper");
             let system = Coupled::new(&scene.primary, &scene.forcing, damper);
             let hybrid = || Hybrid::new(&system, 1e-10, TO, 200_000_000);
-            let long = seen(&system, hybrid(), false);
-            // Held to a wall the damper swings so little that the rounding errors of short flights add up to more than is allowed: contacts alone are short.
+            let long = observe(&system, hybrid(), false);
+            // A damper held to a wall moves so little that the rounding errors of short flight steps add up to more than the tolerance, so
+            // only contacts use short steps.
             let held = numbers.d == 0.0;
-            let short = seen(&system, if held { hybrid() } else { hybrid().in_short_steps() }, held);
+            let short = observe(&system, if held { hybrid() } else { hybrid().in_short_steps() }, held);
             let (Ok(long), Ok(short)) = (&long, &short) else {
                 let same = long.is_err() == short.is_err();
                 return (number, None, (!same).then(|| format!("{number}: {long:?} {short:?}")));
@@ -110,7 +111,7 @@ pub fn dashpots(count: u64) -> Hunt {
                 (long.0[i] - short.0[i]).abs() / size
             };
             let each: [f64; 8] = std::array::from_fn(apart);
-            // Each short step takes a1 from a difference of speeds, and the largest of many is that of the largest rounding error.
+            // Each short step computes a1 from a difference of speeds, so the largest of many values includes the largest rounding error.
             let rounding = 16.0 * f64::EPSILON * numbers.c2 / numbers.m1 * short.0[5] / short.0[6];
             let mut worst = each.into_iter().fold(0.0, f64::max);
             if worst == each[6] && worst < rounding {
@@ -123,8 +124,8 @@ pub fn dashpots(count: u64) -> Hunt {
                     simulate(&free, Window { from: 0.0, to: TO }, &Settings::default()).expect("a run");
                 worst = worst.max((found.e1_max.value - short.0[0]).abs() / short.0[0]);
             }
-            let parted = (0..4).any(|i| (long.1[i] - short.1[i]).abs() > ALIKE);
-            let fault = (worst.is_nan() || worst > ALIKE) && !parted;
+            let parted = (0..4).any(|i| (long.1[i] - short.1[i]).abs() > TOLERANCE);
+            let fault = (worst.is_nan() || worst > TOLERANCE) && !parted;
             let steps = (!parted).then_some([long.2, short.2]);
             (number, steps, fault.then(|| format!("{number}: {worst:e} {each:?} {numbers:?}")))
         })

@@ -1,10 +1,10 @@
-//! The scenes of the hunt for a largest value that is missed: over the ranges that an engineer uses, and where methods have it hard.
+//! Scenes for the hunt for missed largest values: over practical ranges, and where methods have difficulties.
 
 use super::histories::given;
 use crate::scenes::{Numbers, SSVI, Spread};
 use retune_model::Scene;
 
-/// A scene of an engineer's: every number within its range, some of them at its ends.
+/// A practical scene: every number within its usual range, some of them at its ends.
 fn anywhere(draw: &mut Spread) -> Numbers {
     let mut within = |low: f64, high: f64| low + (high - low) * draw.unit();
     let mut numbers = Numbers {
@@ -19,7 +19,7 @@ fn anywhere(draw: &mut Spread) -> Numbers {
         ..SSVI
     };
     numbers.m2 = draw.logarithmic(1.0, 3000.0);
-    // Designs end on their bounds: no gap, no spring, no dashpot.
+    // Optimised designs often lie on their bounds: no gap, no spring, no dashpot.
     for value in [&mut numbers.d, &mut numbers.c, &mut numbers.k2, &mut numbers.c2] {
         if draw.unit() < 0.05 {
             *value = 0.0;
@@ -42,8 +42,8 @@ fn anywhere_masses(draw: &mut Spread) -> Numbers {
     Numbers { m2: draw.logarithmic(50.0, 1500.0), ..numbers }
 }
 
-/// Any scene whose contacts lose energy, from a thousandth to nearly all: one in two by the law of Hunt and Crossley, of the others one in two
-/// with a wall apart.
+/// Any scene whose contacts lose energy, from a thousandth to nearly all: half by the law of Hunt and Crossley; of the others, half have
+/// another restitution at the obstacle.
 fn lossy(draw: &mut Spread) -> Numbers {
     let numbers = anywhere(draw);
     if draw.unit() < 0.5 {
@@ -54,9 +54,9 @@ fn lossy(draw: &mut Spread) -> Numbers {
     Numbers { e, e_obstacle: (draw.unit() < 0.5).then_some(other), ..numbers }
 }
 
-/// A damper that its spring, up to 3000 times as stiff as an engineer's, holds to a wall for half of each period; one in three with λ, and one in
-/// nine with a dashpot up to 2500 times as strong. One in three has walls as soft as rubber or softer, and a force that may turn faster than they turn
-/// the damper.
+/// A damper held to a wall for half of each period by its spring, up to 3000 times as stiff as is practical; one in three with λ, and one
+/// in nine with a dashpot up to 2500 times as strong. One in three has walls as soft as rubber or softer, and a force that may reverse
+/// faster than they can reverse the damper.
 fn held(draw: &mut Spread) -> Numbers {
     let mut numbers = Numbers {
         k2: draw.logarithmic(1e3, 1e7),
@@ -86,7 +86,7 @@ pub(super) fn under_history(draw: &mut Spread) -> Scene {
     given(numbers, draw)
 }
 
-/// How a scene is drawn.
+/// A function that draws a scene.
 pub(super) type Draw = fn(&mut Spread) -> Scene;
 
 pub(super) const ANYWHERE: Draw = |draw| anywhere(draw).scene();
@@ -94,12 +94,12 @@ pub(super) const DENSE: Draw = |draw| dense(draw).scene();
 pub(super) const LOSSY: Draw = |draw| lossy(draw).scene();
 pub(super) const HELD: Draw = |draw| held(draw).scene();
 
-/// What scenes are drawn.
+/// The kind of scenes to draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scenes {
-    /// Any; beside DOP853 one in three with often two maxima in a step.
+    /// Any; beside DOP853 one in three is of [`Self::TwoMaxima`].
     Any,
-    /// Such as often have two maxima in one step.
+    /// Scenes that often have two maxima in one step.
     TwoMaxima,
     /// Any, with contacts that lose energy.
     Lossy,
@@ -109,7 +109,7 @@ pub enum Scenes {
     Histories,
 }
 
-/// A scene, the beginning of its window and its tolerance, by number.
+/// Scene `number`, with the beginning of its window and its tolerance.
 pub(super) fn drawn(number: u64, scene: Draw) -> (Scene, f64, f64) {
     let mut draw = Spread::new(number + 1);
     let scene = scene(&mut draw);

@@ -1,5 +1,5 @@
-//! Runs that are killed (SIGKILL) at random moments, repeatedly, until one completes: its results have the bytes of
-//! an uninterrupted run, no line is lost or doubled, and no temporary file is left.
+//! Kills runs (SIGKILL) at random moments, repeatedly, until one completes. Its results must be identical to those of an uninterrupted
+//! run, with no line lost or duplicated and no temporary file left.
 
 use super::Hunt;
 use crate::desk::{Desk, committed, tiny};
@@ -10,7 +10,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Numbers in [0, 1): the moments are the same in every run of the tests.
+/// Random numbers in [0, 1), the same in every run of the tests.
 struct Draw(u64);
 
 impl Draw {
@@ -19,13 +19,13 @@ impl Draw {
     }
 }
 
-/// A command that writes into `out`, where its journals are, and what to expect.
+/// A command that writes into `out`, with the directories of its journals.
 struct Work {
     name: &'static str,
     arguments: &'static [&'static str],
-    /// Directories of results that searches write.
+    /// Directories of results with a journal.
     places: &'static [&'static str],
-    /// Share of all kills.
+    /// Fraction of all kills.
     share: f64,
 }
 
@@ -112,7 +112,7 @@ fn start(program: &Path, desk: &Desk, arguments: &[&str], out: &[&str]) -> Child
     command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the program")
 }
 
-/// Waits for the end of a run, or until `moment` has come, and kills it then.
+/// Waits for the end of a run, but kills it at `moment`; returns whether it ended before.
 fn ends_before(child: &mut Child, moment: Duration) -> bool {
     let begun = Instant::now();
     loop {
@@ -144,7 +144,7 @@ fn make_parts(program: &Path, desk: &Desk, draw: &mut Draw, limit: Duration, cou
     }
 }
 
-/// Kills a program at least so many times.
+/// Kills a program at least `kills` times.
 pub fn kills(program: &Path, kills: usize) -> Hunt {
     let mut hunt = Hunt::default();
     let begin =
@@ -180,7 +180,8 @@ pub fn kills(program: &Path, kills: usize) -> Hunt {
             }
             loop {
                 let mut child = begin(&desk, work, "out");
-                // The last run may come to its end: what no journal keeps could take nearly as long as the whole, and be cut off for ever.
+                // The last run may complete: work that no journal keeps could take nearly as long as the whole run, and would be cut off
+                // forever.
                 let moment =
                     if kills < wanted { usual.mul_f64(1.1 * draw.next()) } else { Duration::from_secs(600) };
                 if ends_before(&mut child, moment) {

@@ -1,5 +1,5 @@
-//! What a damper needs, beside a plain scan: for structures that are not the paper's, no run at any of many frequencies may reach more than is
-//! told.
+//! Compares what a damper needs with a plain scan: on other structures than the paper's, no run at any of many frequencies may exceed the
+//! reported values.
 
 use super::Hunt;
 use crate::scenes::{Numbers, SSVI};
@@ -8,11 +8,11 @@ use retune_model::{Measure, NonNegative, PerMeasure, Positive, Scene, drawn_numb
 use retune_optim::{FrequencyBand, Goal, Objective};
 use retune_solver::{Also, Ask, Settings, Window, extremes};
 
-/// Shares by which what is told may be below the scan.
-const SHORT: [f64; 4] = [1e-6, 1e-4, 1e-3, 1e-2];
+/// Relative shortfalls that the table counts.
+const SHORTFALLS: [f64; 4] = [1e-6, 1e-4, 1e-3, 1e-2];
 
-/// A structure of 0.3 to 30 t and 2 to 20 rad/s with a damper near its tuning, in gaps of a share of its stroke or without walls; its band
-/// and its window, the later half of so many periods.
+/// A structure of 0.3 to 30 t and 2 to 20 rad/s with a nearly tuned damper, with gaps of a fraction of its stroke or without walls; its
+/// band; and its window, the second half of `periods` periods.
 pub fn drawn(number: u64, walls: bool, periods: f64) -> (Scene, FrequencyBand, Window) {
     let mut seed = number.wrapping_mul(7919) + u64::from(walls);
     let mut between = |from: f64, to: f64| from * (to / from).powf(drawn_number(&mut seed));
@@ -33,7 +33,7 @@ pub fn drawn(number: u64, walls: bool, periods: f64) -> (Scene, FrequencyBand, W
     (scene, omega, Window { from: 0.5 * periods * period, to: periods * period })
 }
 
-/// The largest values of runs from rest at so many frequencies.
+/// The largest values of runs from rest at `count` frequencies.
 fn scanned(scene: &Scene, band: &FrequencyBand, window: Window, count: usize) -> PerMeasure<f64> {
     let band = retune_optim::Band { samples: count, ..band.of(&scene.primary) };
     let at = |i: usize| {
@@ -45,28 +45,29 @@ fn scanned(scene: &Scene, band: &FrequencyBand, window: Window, count: usize) ->
     (0..count).into_par_iter().map(at).reduce(PerMeasure::default, PerMeasure::max)
 }
 
-/// By which share what is told is below a scan, for each measure; negative where it is above.
-fn below(number: u64, walls: bool, periods: f64, count: usize) -> [f64; Measure::ALL.len()] {
+/// The relative shortfall of the reported value from a scan, for each measure; negative if it is above.
+fn shortfalls(number: u64, walls: bool, periods: f64, count: usize) -> [f64; Measure::ALL.len()] {
     let (scene, omega, window) = drawn(number, walls, periods);
     let objective = Objective { omega: Some(omega), ..Objective::default() };
     let goal = Goal { objective, ..window.into() };
-    let told = goal.needs(&scene, &Settings::default(), &|| true).expect("runs").whole;
+    let found = goal.needs(&scene, &Settings::default(), &|| true).expect("runs").whole;
     let scan = scanned(&scene, &omega, window, count);
     std::array::from_fn(|i| {
-        let (told, scan) = (told.0[i].value, scan.0[i]);
-        if scan == 0.0 { 0.0 } else { 1.0 - told / scan }
+        let (found, scan) = (found.0[i].value, scan.0[i]);
+        if scan == 0.0 { 0.0 } else { 1.0 - found / scan }
     })
 }
 
-/// Each of `dampers` without and with walls over so many periods, beside a scan of `count` frequencies. Without walls no more than the share
-/// `allowed` may be missed; with them a motion may be irregular, and what is told of it is a lower bound.
+/// Compares `dampers` dampers, without and with walls, over `periods` periods with a scan of `count` frequencies. Without walls the
+/// shortfall may be at most `allowed`; with walls a motion may be irregular, and the reported value is only a lower bound.
 pub fn needs(dampers: u64, periods: f64, count: usize, allowed: f64) -> Hunt {
     let mut hunt = Hunt::default();
     for (name, walls) in [("without walls", false), ("with walls", true)] {
-        let all: Vec<_> = (0..dampers).map(|number| below(number, walls, periods, count)).collect();
+        let all: Vec<_> = (0..dampers).map(|number| shortfalls(number, walls, periods, count)).collect();
         for measure in Measure::ALL {
             let shares: Vec<f64> = all.iter().map(|below| below[measure.index()]).collect();
-            let short = SHORT.map(|least| shares.iter().filter(|share| **share > least).count().to_string());
+            let short =
+                SHORTFALLS.map(|least| shares.iter().filter(|share| **share > least).count().to_string());
             let most = shares.iter().copied().fold(0.0, f64::max);
             let measure = measure.name();
             hunt.row(format!("| {name} | {measure} | {dampers} | {} | {most:.1e} |", short.join(" | ")));

@@ -1,11 +1,11 @@
-//! Runs that end when their motion repeats, beside the same runs to the end.
+//! Compares runs that end when their motion repeats with the same runs to the end.
 
 use super::Hunt;
 use crate::scenes::{Numbers, SSVI, Spread};
 use rayon::prelude::*;
 use retune_solver::{Also, Ask, Settings, Window, extremes, simulate};
 
-/// A damper of those that searches meet: any bodies, springs and gaps, at any frequency of an engineer's.
+/// A damper as in searches: any bodies, springs and gaps, at any practical frequency.
 fn drawn(number: u64) -> (Numbers, Settings) {
     let mut draw = Spread::new(number + 1);
     let mut within = |low: f64, high: f64| low + (high - low) * draw.unit();
@@ -27,8 +27,8 @@ fn drawn(number: u64) -> (Numbers, Settings) {
     (numbers, Settings { rtol, ..Settings::default() })
 }
 
-/// By how much the largest E1, stroke and contact force over the window differ in a run that may end when it repeats from those of one that
-/// does not, as shares; of a force that is smaller than that on the structure, as a share of the latter.
+/// Relative differences of the largest E1, stroke and contact force over the window between a run that may end when it repeats and one that
+/// does not. A contact force smaller than the force on the structure is compared relative to the latter.
 pub fn differences(number: u64) -> [f64; 3] {
     let window = Window { from: 50.0, to: 100.0 };
     let (numbers, settings) = drawn(number);
@@ -44,11 +44,11 @@ pub fn differences(number: u64) -> [f64; 3] {
     pairs.map(|(a, b, size)| if a == b { 0.0 } else { (a - b).abs() / size })
 }
 
-/// What a run that ends early may miss, in tolerances of the run, the loosest of which counts as 1e-5: energies are squares, and a force
-/// grows faster than the stroke.
+/// Largest difference allowed for a run that ends early, in units of its rtol, at most 1e-5. Energies are squares, and a force grows faster
+/// than the stroke.
 const ALLOWED: f64 = 15.0;
 
-/// Runs that may end when they repeat beside complete ones, on `count` scenes.
+/// Compares runs that may end when they repeat with complete ones on `count` scenes.
 pub fn repeats(count: u64) -> Hunt {
     let looked: Vec<_> = (0..count).into_par_iter().map(|number| (number, differences(number))).collect();
     let mut hunt = Hunt::default();

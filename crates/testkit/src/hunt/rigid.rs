@@ -1,11 +1,12 @@
-//! Rigid walls beside a path that trusts nothing: Taylor steps of a millisecond or two, looked at eight times each, roots by bisection.
+//! Rigid walls: compares the solver with a brute-force integration by Taylor steps of a millisecond or two, sampled eight times each,
+//! with roots by bisection.
 
 use super::Hunt;
 use crate::scenes::{Numbers, SSVI, Spread};
 use rayon::prelude::*;
 use retune_solver::{Settings, Window, simulate};
 
-/// Any damper of an engineer's between rigid walls: every kind of e, and gaps, springs and dashpots that are zero.
+/// Any practical damper between rigid walls: every kind of e, and gaps, springs and dashpots that are zero.
 pub fn drawn(number: u64) -> Numbers {
     let mut draw = Spread::new(number + 7);
     let mut within = |low: f64, high: f64| low + (high - low) * draw.unit();
@@ -37,9 +38,9 @@ pub fn drawn(number: u64) -> Numbers {
     numbers
 }
 
-/// What both paths tell.
+/// The results of a run.
 #[derive(Clone, Copy, Debug)]
-struct Told {
+struct Summary {
     /// Largest E1 (J), |v1| (m/s) and stroke (m).
     largest: [f64; 3],
     end: [f64; 4],
@@ -49,15 +50,15 @@ struct Told {
 /// Terms of a Taylor series.
 const TERMS: usize = 14;
 
-/// The wary path.
-struct Wary {
+/// The brute-force integration.
+struct TaylorPath {
     n: Numbers,
     /// The wall that holds the damper.
     held: Option<usize>,
 }
 
-impl Wary {
-    /// `[x1, v1, x2, v2]` as Taylor coefficients from a moment on.
+impl TaylorPath {
+    /// Taylor coefficients of `[x1, v1, x2, v2]` from time `t` on.
     fn series(&self, t: f64, y: [f64; 4]) -> [[f64; TERMS]; 4] {
         let n = &self.n;
         let mut of = [[0.0; TERMS]; 4];
@@ -80,31 +81,32 @@ impl Wary {
         of
     }
 
-    /// The force between a wall and the damper if it holds it.
-    fn push(&self, wall: usize, t: f64, y: &[f64; 4]) -> f64 {
+    /// The force between a wall and the damper while the wall holds it.
+    fn holding_force(&self, wall: usize, t: f64, y: &[f64; 4]) -> f64 {
         let n = &self.n;
         let a = (n.p * (n.omega * t).cos() - n.c1 * y[1] - n.k1 * y[0]) / (n.m1 + n.m2);
         let on_damper = n.m2 * a + n.k2 * (y[2] - y[0] - n.d);
         if wall == 0 { on_damper } else { -on_damper }
     }
 
-    /// A run from rest; a rebound slower than `slow` (m/s) is the end of a chatter.
-    fn run(mut self, to: f64, h: f64, slow: f64) -> Option<Told> {
-        const LOOKS: u32 = 8;
+    /// A run from rest; a rebound slower than `slow` (m/s) ends a chatter.
+    fn run(mut self, to: f64, h: f64, slow: f64) -> Option<Summary> {
+        const SAMPLES: u32 = 8;
         let n = self.n;
         let e = n.rigid.unwrap_or(1.0);
         let (mut t, mut y) = (0.0, [0.0, 0.0, n.d, 0.0]);
-        let mut told = Told { largest: [0.0; 3], end: y, impacts: 0 };
-        if n.d == 0.0 && self.push(0, 0.0, &y) >= 0.0 {
+        let mut summary = Summary { largest: [0.0; 3], end: y, impacts: 0 };
+        if n.d == 0.0 && self.holding_force(0, 0.0, &y) >= 0.0 {
             self.held = Some(0);
         }
         for _ in 0..4_000_000 {
             let length = h.min(to - t);
             let series = self.series(t, y);
             let at = |s: f64| series.map(|terms| terms.iter().rev().fold(0.0, |sum, c| sum * s + c));
-            // What must stay positive: the gaps, of one that was just left over the time; or the force of the wall that holds.
-            let open = |s: f64, wall: usize| match self.held {
-                Some(held) if held == wall => self.push(wall, t + s, &at(s)),
+            // A function that is negative after an event: the gap, divided by the time if it begins at zero; or the force of the wall
+            // that holds the damper.
+            let margin = |s: f64, wall: usize| match self.held {
+                Some(held) if held == wall => self.holding_force(wall, t + s, &at(s)),
                 Some(_) => 1.0,
                 None => {
                     let terms: [f64; TERMS] = std::array::from_fn(|k| {
@@ -119,9 +121,9 @@ impl Wary {
             let mut first: Option<(f64, usize)> = None;
             for wall in [0, 1] {
                 let (mut low, mut high) = (0.0, None);
-                for look in 1..=LOOKS {
-                    let s = length * f64::from(look) / f64::from(LOOKS);
-                    if open(s, wall) < 0.0 {
+                for sample in 1..=SAMPLES {
+                    let s = length * f64::from(sample) / f64::from(SAMPLES);
+                    if margin(s, wall) < 0.0 {
                         high = Some(s);
                         break;
                     }
@@ -130,39 +132,40 @@ impl Wary {
                 let Some(mut high) = high else { continue };
                 for _ in 0..200 {
                     let middle = 0.5 * (low + high);
-                    if open(middle, wall) < 0.0 { high = middle } else { low = middle }
+                    if margin(middle, wall) < 0.0 { high = middle } else { low = middle }
                 }
                 if first.is_none_or(|(s, _)| high < s) {
                     first = Some((high, wall));
                 }
             }
             let end = first.map_or(length, |(s, _)| s);
-            let note = |told: &mut Told, y: &[f64; 4]| {
+            let note = |summary: &mut Summary, y: &[f64; 4]| {
                 let e1 = 0.5 * (n.m1 * y[1] * y[1] + n.k1 * y[0] * y[0]);
                 let now = [e1, y[1].abs(), (y[2] - y[0] - n.d).abs()];
-                (0..3).for_each(|i| told.largest[i] = told.largest[i].max(now[i]));
+                (0..3).for_each(|i| summary.largest[i] = summary.largest[i].max(now[i]));
             };
-            (0..=LOOKS).for_each(|look| note(&mut told, &at(end * f64::from(look) / f64::from(LOOKS))));
+            (0..=SAMPLES)
+                .for_each(|sample| note(&mut summary, &at(end * f64::from(sample) / f64::from(SAMPLES))));
             (t, y) = (t + end, at(end));
             match (first, self.held) {
                 (None, _) if t >= to => {
-                    told.end = y;
-                    return Some(told);
+                    summary.end = y;
+                    return Some(summary);
                 }
                 (None, _) => {}
                 (Some(_), Some(_)) => self.held = None,
                 (Some((_, wall)), None) => {
                     let w = y[3] - y[1];
                     let rebound = e * w.abs();
-                    told.impacts += 1;
+                    summary.impacts += 1;
                     y[2] = y[0] + [0.0, n.d + n.c][wall];
                     let before = y[1];
                     y[1] += n.m2 / (n.m1 + n.m2) * w;
-                    let stays = rebound <= slow && self.push(wall, t, &y) >= 0.0;
+                    let stays = rebound <= slow && self.holding_force(wall, t, &y) >= 0.0;
                     y[1] = before + if stays { 1.0 } else { 1.0 + e } * n.m2 / (n.m1 + n.m2) * w;
                     y[3] = if stays { y[1] } else { y[1] - e * w };
                     self.held = stays.then_some(wall);
-                    note(&mut told, &y);
+                    note(&mut summary, &y);
                 }
             }
         }
@@ -170,30 +173,31 @@ impl Wary {
     }
 }
 
-/// Largest relative excess of what is looked at everywhere over what the search finds, and of the latter over the former.
+/// Largest relative excess of the sampled value over the solver's, and of the solver's over the sampled one.
 const MISSED: f64 = 1e-9;
 const ABOVE: f64 = 1e-4;
-/// Two wary paths whose ends agree to the first share are one motion, whose end the solver must have to the second.
+/// The motion counts as predictable if two brute-force runs end within the first relative distance; the solver must then agree within
+/// the second.
 const SAME: f64 = 1e-10;
 const END: f64 = 1e-8;
 
-/// Beside the wary path, on `count` scenes of 4 s.
+/// Compares the solver with the brute-force integration on `count` scenes of 4 s.
 pub fn rigid(count: u64) -> Hunt {
     beside(&(0..count).collect::<Vec<_>>())
 }
 
-/// The same on the scenes of these numbers.
+/// The same comparison on the scenes with these numbers.
 pub fn beside(numbers: &[u64]) -> Hunt {
     const TO: f64 = 4.0;
-    let look = |number: u64| -> (bool, bool, Option<String>) {
+    let compare = |number: u64| -> (bool, bool, Option<String>) {
         let n = drawn(number);
-        let wary = |h: f64, slow: f64| Wary { n, held: None }.run(TO, h, slow);
+        let taylor = |h: f64, slow: f64| TaylorPath { n, held: None }.run(TO, h, slow);
         let found = simulate(&n.scene(), Window { from: 0.0, to: TO }, &Settings::default());
         let found = match found {
             Ok(found) => found,
             Err(error) => return (false, false, Some(format!("{number}: {error}; {n:?}"))),
         };
-        let (Some(a), Some(b)) = (wary(2e-3, 1e-11), wary(1.3e-3, 1e-10)) else {
+        let (Some(a), Some(b)) = (taylor(2e-3, 1e-11), taylor(1.3e-3, 1e-10)) else {
             return (false, false, None);
         };
         let size = a.end.iter().fold(1e-3_f64, |most, v| most.max(v.abs()));
@@ -202,20 +206,20 @@ pub fn beside(numbers: &[u64]) -> Hunt {
         if apart(&a.end, &b.end) > SAME {
             return (false, a.impacts > 0, None);
         }
-        let own = [found.e1_max.value, found.structure.velocity.value, found.spring_deflection_max];
+        let solver = [found.e1_max.value, found.structure.velocity.value, found.spring_deflection_max];
         let off = apart(&found.final_state, &a.end);
         let holds = off <= END
-            && own.iter().zip(a.largest.iter().zip(b.largest)).all(|(own, (p, q))| {
+            && solver.iter().zip(a.largest.iter().zip(b.largest)).all(|(solver, (p, q))| {
                 let seen = p.max(q);
-                *own >= seen * (1.0 - MISSED) && *own <= seen * (1.0 + ABOVE) + 1e-12
+                *solver >= seen * (1.0 - MISSED) && *solver <= seen * (1.0 + ABOVE) + 1e-12
             });
-        (true, a.impacts > 0, (!holds).then(|| format!("{number}: {off:e} {own:?} {a:?} {b:?} {n:?}")))
+        (true, a.impacts > 0, (!holds).then(|| format!("{number}: {off:e} {solver:?} {a:?} {b:?} {n:?}")))
     };
-    let looked: Vec<_> = numbers.par_iter().map(|&number| look(number)).collect();
+    let compared: Vec<_> = numbers.par_iter().map(|&number| compare(number)).collect();
     let [same, struck] =
-        [0, 1].map(|i| looked.iter().filter(|(same, struck, _)| [*same, *same && *struck][i]).count());
+        [0, 1].map(|i| compared.iter().filter(|(same, struck, _)| [*same, *same && *struck][i]).count());
     let (count, mut hunt) = (numbers.len(), Hunt::default());
-    hunt.faults.extend(looked.into_iter().filter_map(|(_, _, fault)| fault));
+    hunt.faults.extend(compared.into_iter().filter_map(|(_, _, fault)| fault));
     hunt.row(format!("| {count} | {same} | {struck} | {} |", hunt.faults.len()));
     hunt.check(struck as f64 > 0.4 * count as f64, || {
         format!("{struck} of {count} could be predicted and struck")

@@ -1,11 +1,11 @@
-//! Scenes over fifteen orders of magnitude that touch a wall a few times, beside DOP853.
+//! Compares with DOP853 on scenes over fifteen orders of magnitude that touch a wall a few times.
 
 use super::Hunt;
 use rayon::prelude::*;
 use retune_model::Scene;
 use retune_solver::{Method, Response, SceneKind, Settings, SolverError, Window, simulate};
 
-/// The run with one of the exact method and one of DOP853, which meets a contact in time and by its own error estimate.
+/// Runs a scene by the hybrid and by DOP853, which treats contacts in physical time with its own error estimate.
 pub fn both(scene: &Scene, to: f64, rtol: f64, most_steps: [u64; 2]) -> [Result<Response, SolverError>; 2] {
     let window = Window { from: 0.0, to };
     [(Method::Hybrid, rtol, most_steps[0]), (Method::Dop853, 1e-12, most_steps[1])].map(
@@ -21,9 +21,9 @@ pub fn apart(a: f64, b: f64) -> f64 {
     (a - b).abs() / a.abs().max(b.abs())
 }
 
-/// Those scenes that touch a wall a few times, before small differences can grow.
+/// Compares the scenes that touch a wall only a few times, before small differences can grow.
 pub fn scenes(scenes: &[Scene]) -> Hunt {
-    // Whether a scene is one that counts, and what is wrong with it.
+    // Whether a scene counts, and its fault, if any.
     let look = |scene: &Scene| -> (bool, Option<String>) {
         let [own, other] = both(scene, 1.0, 1e-9, [3_000; 2]);
         let Ok(other) = other else { return (false, None) };

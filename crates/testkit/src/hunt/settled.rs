@@ -1,30 +1,30 @@
-//! Settled responses beside much longer runs.
+//! Compares settled responses with much longer runs.
 
 use super::Hunt;
 use crate::scenes::{Numbers, SSVI, Spread};
 use retune_model::Scene;
 use retune_solver::{Also, Ask, Extremes, Settings, Settle, Window, extremes, settled};
 
-/// Of the settled motion alone.
+/// Asks for the extremes of the settled motion alone.
 fn of_settled() -> Ask {
     Ask { also: Some(Also::walls(f64::INFINITY)), ..Ask::default() }
 }
 
-/// The extremes of the settled motion; none where it does not settle in 400 s or is answered in closed form.
+/// The extremes of the settled motion; none if it does not settle in 400 s or has a closed form.
 pub fn rest(scene: &Scene) -> Option<Extremes> {
     let window = Window { from: 50.0, to: 400.0 };
     let found = settled(scene, window, Settle::default(), &Settings::default(), of_settled()).expect("a run");
     (found.settled && found.largest.time < window.to).then_some(found)
 }
 
-/// Those of a run five times as long.
+/// The extremes at the end of a run five times as long.
 pub fn late(scene: &Scene) -> Extremes {
     let window = Window { from: 1900.0, to: 2000.0 };
     let ask = Ask { also: Some(Also::walls(window.from)), ..Ask::default() };
     extremes(scene, window, &Settings::default(), ask).expect("a run")
 }
 
-/// By how much they differ, as a share of what may be: a thousandth of E1max and of the stroke, a hundredth of the force or 0.1 N.
+/// Their differences relative to those allowed: a thousandth of E1max and of the stroke, a hundredth of the force or 0.1 N.
 pub fn difference(found: Extremes, late: Extremes) -> [f64; 3] {
     let share = |a: f64, b: f64, most: f64| (a - b).abs() / most;
     [
@@ -34,7 +34,7 @@ pub fn difference(found: Extremes, late: Extremes) -> [f64; 3] {
     ]
 }
 
-/// Dampers that creep for up to minutes (c2/k2), touch one wall, two or none, about the structure's resonance.
+/// Dampers that creep for up to minutes (c2/k2) and touch one wall, two or none, near the structure's resonance.
 pub fn settled_stays(scenes: usize) -> Hunt {
     let mut spread = Spread::new(13);
     let (mut looked_at, mut off, mut worst) = (0, [0; 3], [0.0_f64; 3]);
