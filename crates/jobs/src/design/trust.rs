@@ -1,6 +1,6 @@
 //! Which of the ends of a search is compared, and how far a damper may be trusted.
 
-use super::candidate::{Candidate, What, at_few_stiffnesses, with_design};
+use super::candidate::{Candidate, What, with_design};
 use super::ssvi;
 use crate::certify::{Certificate, Verdict, judge, judge_in_seconds};
 use crate::{Error, Observer};
@@ -71,8 +71,7 @@ pub(super) fn worst_nearby(certificate: &Certificate) -> f64 {
 
 /// The certificate of a candidate, as far as seconds allow.
 pub(super) fn certified(study: &Study) -> Result<Certificate, Error> {
-    let few = at_few_stiffnesses(study);
-    if ssvi::is_lossy(&study.scene) { judge_in_seconds(&few) } else { judge(&few) }
+    if ssvi::is_lossy(&study.scene) { judge_in_seconds(study) } else { judge(study) }
 }
 
 /// Of designs that are nearly as good as the first the one with the best certificate; one that is certain ends the search.
