@@ -1,40 +1,40 @@
-//! How much work a run may be.
+//! Limits on the work of a run.
 
 use crate::error::{Remedy, SolverError};
 use crate::response::Work;
 
 /// Steps, or evaluations, after which the progress of a run is checked.
-const CHECKED: u64 = 1 << 18;
+const CHECK_AFTER: u64 = 1 << 18;
 
 /// With fewer steps than this the rate of a run is unknown: the remedy is a higher limit.
-const FEW: u64 = 1000;
+const MIN_STEPS: u64 = 1000;
 
-/// A run that would need more than this many times its limit is given up. Less may be a burst of contacts that ends.
-const HOPELESS: f64 = 100.0;
+/// A run that would need more than this many times its limit is aborted. A smaller excess may be a burst of contacts that ends.
+const GIVE_UP_FACTOR: f64 = 100.0;
 
-/// Steps of flight that take as long as an evaluation of the equations, or a look of an observer, with its share of what is done at each step: with
-/// the default limit of 20 million steps hardly any run takes more than two seconds (`just lab hunt-durations`).
-const STEPS_OF_AN_EVALUATION: u64 = 4;
+/// Flight steps that take as long as one evaluation of the equations, or the work of an observer that counts as one, with its share of the
+/// other work in a step: with the default limit of 20 million steps hardly any run takes more than two seconds (`just lab hunt-durations`).
+const STEPS_PER_EVALUATION: u64 = 4;
 
-/// Looks of an observer ([`Observer::looks`](crate::observe::Observer::looks)) that count as an evaluation: with the default limit they take
-/// two seconds (`just lab hunt-durations`).
-const LOOKS_OF_AN_EVALUATION: u64 = 22;
+/// Units of an observer's work ([`Observer::search_work`](crate::observe::Observer::search_work)) that count as one evaluation: with the
+/// default limit they take two seconds (`just lab hunt-durations`).
+const SEARCH_WORK_PER_EVALUATION: u64 = 22;
 
-/// Evaluations and looks that a run may make however few steps it may take.
+/// Evaluations, with the work of observers, that every run may make, whatever its limit on steps.
 const LEAST_EVALUATIONS: u64 = 5_000_000;
 
 impl Work {
-    /// With what an observer has looked at, as evaluations.
+    /// Adds the work of an observer, as evaluations.
     #[inline(always)]
-    pub(crate) fn and(self, looks: u64) -> Self {
-        Self { evaluations: self.evaluations + looks / LOOKS_OF_AN_EVALUATION, ..self }
+    pub(crate) fn with_search_work(self, search_work: u64) -> Self {
+        Self { evaluations: self.evaluations + search_work / SEARCH_WORK_PER_EVALUATION, ..self }
     }
 }
 
 /// How a run chooses its steps.
 #[derive(Clone, Copy, Debug)]
 pub enum Pace {
-    /// Exact flight: steps of fixed length, set by the fastest rate of the system. All further steps are those of contacts.
+    /// Exact flight: steps of fixed length, set by the fastest rate of the system. All other steps are those of contacts.
     Flight {
         /// Length of a step, s.
         step: f64,
@@ -61,23 +61,24 @@ impl Pace {
 
 /// The number of steps that a stretch of a run may take, and the progress that they must make.
 ///
-/// The number of steps that a bouncing damper needs is not known beforehand. So a run is refused once it has used up its steps or made
-/// a quarter as many evaluations (of the equations of contact, or by a method that chooses its steps, and looks of its observers; at least 5 million), and after 262,144 of either if at its present
-/// rate it would need a hundred times its limit (or a hundred times 262,144, if the limit is lower). Raising `max_steps` raises all.
+/// The number of steps that a bouncing damper needs is not known in advance. So a run is aborted once it has used up its steps or made a
+/// quarter as many evaluations (of the equations of contact, or by a method with step control, plus the work of its observers; at least 5
+/// million). It is also aborted after 262,144 of either if at its present rate it would need a hundred times its limit (or a hundred times
+/// 262,144, if the limit is lower). Raising `max_steps` raises all these limits.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
     pace: Pace,
     limit: u64,
     /// Work before this stretch.
-    begun: Work,
+    work_before: Work,
     span: [f64; 2],
 }
 
 impl Budget {
     /// The budget of a run of at most `limit` steps on the stretch from `span[0]` to `span[1]`, s, before which it has done the work
-    /// `begun`.
-    pub fn new(pace: Pace, limit: u64, begun: Work, span: [f64; 2]) -> Self {
-        Self { pace, limit, begun, span }
+    /// `work_before`.
+    pub fn new(pace: Pace, limit: u64, work_before: Work, span: [f64; 2]) -> Self {
+        Self { pace, limit, work_before, span }
     }
 
     /// Checks a run that has reached `t` (s).
@@ -87,11 +88,12 @@ impl Budget {
     #[inline(always)]
     pub fn check(&self, work: &Work, t: f64) -> Result<(), SolverError> {
         let Work { steps, evaluations, .. } = *work;
-        let is_long = steps - self.begun.steps > CHECKED || evaluations - self.begun.evaluations > CHECKED;
-        if steps > self.limit || is_long { self.judge(work, t) } else { Ok(()) }
+        let is_long = steps - self.work_before.steps > CHECK_AFTER
+            || evaluations - self.work_before.evaluations > CHECK_AFTER;
+        if steps > self.limit || is_long { self.check_progress(work, t) } else { Ok(()) }
     }
 
-    /// The error of a run that cannot go on from `t` (s), however many steps it may take.
+    /// The error of a run that cannot advance beyond `t` (s), however many steps it may take.
     #[cold]
     pub fn no_progress(&self, work: &Work, t: f64) -> SolverError {
         let Self { pace, limit, span: [_, to], .. } = *self;
@@ -100,18 +102,18 @@ impl Budget {
     }
 
     #[cold]
-    fn judge(&self, work: &Work, t: f64) -> Result<(), SolverError> {
-        let Self { pace, limit, begun, span: [from, to] } = *self;
+    fn check_progress(&self, work: &Work, t: f64) -> Result<(), SolverError> {
+        let Self { pace, limit, work_before, span: [from, to] } = *self;
         let Work { steps, evaluations, .. } = *work;
-        let (taken, come) = ((steps - begun.steps) as f64, (t - from).max(0.0));
-        let rest = (to - from) / come;
+        let (taken, covered) = ((steps - work_before.steps) as f64, (t - from).max(0.0));
+        let rest = (to - from) / covered;
         let needed = taken * rest;
-        let most_evaluations = (limit / STEPS_OF_AN_EVALUATION).max(LEAST_EVALUATIONS);
-        let evaluated = (evaluations - begun.evaluations) as f64 * rest;
-        let hopeless =
-            needed > HOPELESS * limit.max(CHECKED) as f64 || evaluated > HOPELESS * most_evaluations as f64;
-        if steps - begun.steps > FEW && hopeless {
-            let remedy = pace.remedy(to, come / taken);
+        let most_evaluations = (limit / STEPS_PER_EVALUATION).max(LEAST_EVALUATIONS);
+        let evaluated = (evaluations - work_before.evaluations) as f64 * rest;
+        let hopeless = needed > GIVE_UP_FACTOR * limit.max(CHECK_AFTER) as f64
+            || evaluated > GIVE_UP_FACTOR * most_evaluations as f64;
+        if steps - work_before.steps > MIN_STEPS && hopeless {
+            let remedy = pace.remedy(to, covered / taken);
             return Err(SolverError::TooSlow { t, steps, needed, limit, remedy });
         }
         if steps > limit {
@@ -188,8 +190,8 @@ mod tests {
     #[test]
     fn contract_a_budget_counts_the_steps_of_its_stretch() {
         let budget = Budget::new(FLIGHT, 1_000_000, steps(200_000), [10.0, 20.0]);
-        assert_eq!(budget.check(&steps(200_000 + CHECKED), 10.0), Ok(()), "too early to tell");
-        assert!(budget.check(&steps(200_001 + CHECKED), 10.0).is_err(), "no way made");
+        assert_eq!(budget.check(&steps(200_000 + CHECK_AFTER), 10.0), Ok(()), "too early to tell");
+        assert!(budget.check(&steps(200_001 + CHECK_AFTER), 10.0).is_err(), "no way made");
         // 300,000 steps for 10 s / 333 are 99.9 million for all of it, whatever came before.
         assert_eq!(budget.check(&steps(500_000), 10.0 + 10.0 / 333.0), Ok(()));
         assert!(budget.check(&steps(500_000), 10.0 + 10.0 / 334.0).is_err());

@@ -1,4 +1,4 @@
-//! What the contacts of a motion are like: how fast, how deep and how long.
+//! Statistics of the contacts of a motion: speed, indentation and duration.
 
 use crate::motion::segment::Segment;
 use crate::observe::falls::falls;
@@ -21,44 +21,43 @@ pub struct Collisions {
 }
 
 impl Collisions {
-    /// No contact.
     pub(crate) const NONE: Self =
         Self { count: 0, speed: 0.0, indentation: 0.0, shortest: f64::INFINITY, longest: 0.0 };
 }
 
-/// Watches contacts.
-pub(crate) struct Touched<'a> {
+/// Collects the statistics of contacts.
+pub(crate) struct CollisionObserver<'a> {
     system: &'a Coupled,
-    /// Those with each wall.
+    /// The contacts with each wall.
     pub walls: [Collisions; 2],
     /// Speed of the bodies relative to each other at the end of the last segment, m/s.
     speed: f64,
-    /// When the contact that lasts began, s, and with which wall.
+    /// When the present contact began, s, and with which wall.
     began: Option<(f64, Side)>,
 }
 
-/// A body that moves away is out of the wall from this share of the largest indentation on: general methods end their pieces there only to rounding.
-const OUT: f64 = 1e-9;
+/// Share of the largest indentation below which a body that moves away has left the wall: general methods end their steps there only to
+/// rounding.
+const SEPARATED: f64 = 1e-9;
 
-impl<'a> Touched<'a> {
-    /// Of a system; none yet.
+impl<'a> CollisionObserver<'a> {
     pub fn new(system: &'a Coupled) -> Self {
         Self { system, walls: [Collisions::NONE; 2], speed: 0.0, began: None }
     }
 
     /// Whether a contact has ended.
-    fn is_out(&self, side: Side, y: &[f64; 4]) -> bool {
+    fn has_separated(&self, side: Side, y: &[f64; 4]) -> bool {
         let depth = self.system.indentation(y)[side as usize];
-        depth <= OUT * self.walls[side as usize].indentation && side.sign() * (y[3] - y[1]) < 0.0
+        depth <= SEPARATED * self.walls[side as usize].indentation && side.sign() * (y[3] - y[1]) < 0.0
     }
 
-    fn deepens(&mut self, y: &[f64; 4]) {
+    fn record_depth(&mut self, y: &[f64; 4]) {
         for (wall, depth) in self.walls.iter_mut().zip(self.system.indentation(y)) {
             wall.indentation = wall.indentation.max(depth);
         }
     }
 
-    fn ends(&mut self, t: f64) {
+    fn end_contact(&mut self, t: f64) {
         if let Some((began, side)) = self.began.take() {
             let wall = &mut self.walls[side as usize];
             wall.shortest = wall.shortest.min(t - began);
@@ -67,31 +66,31 @@ impl<'a> Touched<'a> {
     }
 }
 
-impl Observer<4> for Touched<'_> {
+impl Observer<4> for CollisionObserver<'_> {
     fn segment(&mut self, segment: &dyn Segment<4>) {
         let [from, to] = segment.ends();
-        let out_at_once = self.began.is_some_and(|(_, side)| self.is_out(side, &from.y));
-        if segment.in_flight() || out_at_once {
-            self.ends(from.t);
+        let separated_at_start = self.began.is_some_and(|(_, side)| self.has_separated(side, &from.y));
+        if segment.in_flight() || separated_at_start {
+            self.end_contact(from.t);
         } else {
             // The relative position is largest at an end of the segment, or where its rate vanishes between them.
             let rate = |y: &[f64; 4]| y[3] - y[1];
             let [first, last] = [rate(&from.y), rate(&to.y)];
-            self.deepens(&from.y);
-            self.deepens(&to.y);
+            self.record_depth(&from.y);
+            self.record_depth(&to.y);
             if first * last < 0.0 {
                 let toward = |theta: f64| first.signum() * rate(&segment.at(theta).y);
                 let turn = falls(toward, (0.0, first.abs()), (segment.length(), -last.abs()));
-                self.deepens(&segment.at(turn).y);
+                self.record_depth(&segment.at(turn).y);
             }
-            if self.began.is_some_and(|(_, side)| self.is_out(side, &to.y)) {
-                self.ends(to.t);
+            if self.began.is_some_and(|(_, side)| self.has_separated(side, &to.y)) {
+                self.end_contact(to.t);
             }
         }
         self.speed = (to.y[3] - to.y[1]).abs();
     }
     fn touch_down(&mut self, t: f64, side: Side) {
-        self.ends(t);
+        self.end_contact(t);
         self.began = Some((t, side));
         let wall = &mut self.walls[side as usize];
         wall.count += 1;

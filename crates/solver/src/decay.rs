@@ -1,4 +1,4 @@
-//! How long the structure goes on moving once nothing acts on it any more.
+//! How long the motion of the structure takes to decay once the forcing has ended.
 
 use crate::energy_bound;
 use crate::error::SolverError;
@@ -17,7 +17,8 @@ use retune_model::{Bare, Coupled, Scene};
 /// The share of the largest energy below which a motion has decayed.
 pub const LEFT: f64 = 0.05;
 
-/// Most maxima above the level that are looked at in one segment of the motion, which is shorter than a period of its fastest part.
+/// Limit on maxima above the level that are located in one segment of the motion, which is shorter than a period of its fastest
+/// part.
 const MOST_MAXIMA: usize = 16;
 
 /// The decay time, s: how long after the end of the forcing the energy of the structure exceeds a share [`LEFT`] of its largest value in the
@@ -29,7 +30,7 @@ pub fn decay_time(scene: &Scene, to: f64, settings: &Settings) -> Result<Option<
     Ok(decay(scene, to, settings)?.map(|decay| decay.value))
 }
 
-/// The same, and when the energy is at that share, at the latest `to`.
+/// [`decay_time`], and the time (s) at which the energy is at that share, at the latest `to`.
 pub(crate) fn decay(scene: &Scene, to: f64, settings: &Settings) -> Result<Option<Extreme>, SolverError> {
     let end = scene.forcing.end();
     if end >= to {
@@ -54,17 +55,17 @@ pub fn last_above(
     let found = match &scene.damper {
         None => {
             let system = Bare::new(&scene.primary, &scene.forcing);
-            of_system(&system, BareEnergy::new(&system), level, window, settings)
+            last_above_in(&system, BareEnergy::new(&system), level, window, settings)
         }
         Some(damper) => {
             let system = Coupled::new(&scene.primary, &scene.forcing, damper);
-            of_system(&system, PrimaryEnergy::new(&system), level, window, settings)
+            last_above_in(&system, PrimaryEnergy::new(&system), level, window, settings)
         }
     };
-    found.map_err(|error| energy_bound::error(window, error))
+    found.map_err(|error| energy_bound::clamp_error_time(window, error))
 }
 
-fn of_system<S: Follow<N>, const N: usize>(
+fn last_above_in<S: Follow<N>, const N: usize>(
     system: &S,
     quantity: impl Quantity<N>,
     level: f64,
@@ -77,12 +78,12 @@ fn of_system<S: Follow<N>, const N: usize>(
     Ok(if above.is_above { f64::INFINITY } else { above.last })
 }
 
-/// Watches for the last time that a quantity exceeds a level, as the search for a largest value proves it: see `docs/bounds.md`.
+/// Finds the last time at which a quantity exceeds a level, proven as in the search for a largest value: see `docs/bounds.md`.
 struct LastAbove<Q> {
     search: Search<Q>,
     level: f64,
     last: f64,
-    /// Whether it is above the level at the end of the latest segment.
+    /// Whether the quantity is above the level at the end of the latest segment.
     is_above: bool,
 }
 
@@ -106,7 +107,7 @@ impl<Q> LastAbove<Q> {
 impl<const N: usize, Q: Quantity<N>> Observer<N> for LastAbove<Q> {
     fn segment(&mut self, segment: &dyn Segment<N>) {
         self.is_above = false;
-        if self.search.quantity.form().most(segment.energy()) <= self.level {
+        if self.search.quantity.form().upper_bound(segment.energy()) <= self.level {
             return;
         }
         let (mut from, to) = (self.place(segment, 0.0), self.place(segment, segment.length()));
@@ -121,7 +122,7 @@ impl<const N: usize, Q: Quantity<N>> Observer<N> for LastAbove<Q> {
                 from = self.place(segment, theta);
                 self.last = from.1.t;
             }
-            // Whether it rises above the level once more, and where.
+            // Whether the quantity rises above the level again, and where.
             self.search.restart(Extreme { value: self.level, time: f64::NAN });
             let remainder = self.search.quintic_error(segment, &from, &to, true);
             self.search.begin(segment, &from, &to, remainder);
@@ -137,11 +138,11 @@ impl<const N: usize, Q: Quantity<N>> Observer<N> for LastAbove<Q> {
             from = self.place(segment, highest);
             self.last = from.1.t;
         }
-        // It may be above the level up to here.
+        // Undecided: it may be above the level up to the end of the segment.
         self.last = to.1.t;
     }
 
-    fn looks(&self) -> u64 {
-        self.search.looks
+    fn search_work(&self) -> u64 {
+        self.search.search_work
     }
 }

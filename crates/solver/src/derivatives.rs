@@ -1,9 +1,8 @@
-//! The derivatives of a run's largest value by parameters of the damper, beside the value itself: [`extremes_by`] for [`extremes`],
-//! [`settled_by`] for [`settled`].
+//! The derivatives of a run's largest value by parameters of the damper: [`extremes_by`] for [`extremes`], [`settled_by`] for [`settled`].
 //!
-//! They are those of the value at the time at which it is reached: at a maximum the time does not matter to first order, and an end of the
-//! window does not move. Where several moments have the same value it has a kink, and these are the derivatives at the first: a
-//! subgradient. They are taken by the exact method, whichever the settings name.
+//! They are those of the value at the fixed time at which it is reached: at a maximum a shift of the time has no effect to first order, and
+//! an end of the window does not move. Where the value is reached at several times it has a kink, and these are the derivatives at the
+//! first of them: a subgradient. They are computed by the exact method, whatever the settings.
 
 use crate::error::SolverError;
 use crate::extremes::{Ask, extremes};
@@ -35,8 +34,8 @@ pub fn extremes_by(
     by(&system, window, &settings, ask, at, parameters)
 }
 
-/// The derivatives of the largest value that [`settled`] finds, as [`extremes_by`]. Those of a motion with contacts are of the run from
-/// rest up to the time of the value: as far as the run has settled, those of the settled motion.
+/// The derivatives of the largest value that [`settled`] finds, as [`extremes_by`]. For a motion with contacts they are those of the run
+/// from rest to the time of the value, which are those of the settled motion as far as the run has settled.
 ///
 /// # Errors
 /// [`SolverError`] with the time reached.
@@ -59,7 +58,7 @@ pub fn settled_by(
     by(&system, window, &settings, ask, at, parameters)
 }
 
-/// The system, and the settings by the exact method; none without a damper.
+/// The system, and the settings with the exact method; `None` without a damper.
 fn exact(scene: &Scene, settings: &Settings, ask: Ask) -> Result<Option<(Coupled, Settings)>, SolverError> {
     let Some(damper) = scene.damper.as_ref() else { return Ok(None) };
     if scene.forcing.history().is_some() {

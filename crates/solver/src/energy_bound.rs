@@ -5,21 +5,21 @@ use crate::response::{Extreme, Response};
 use crate::settings::{Settings, Window};
 use retune_model::{Bare, Coupled, Measure, Scene};
 
-/// Allowance in the bound on the energy, relative: for rounding; and for the error of a general method, which at a fixed step or a loose
-/// tolerance gains energy by itself.
+/// Relative tolerance of the energy bound: for rounding, and for the error of a general method, which gains spurious energy at a fixed step
+/// or a loose tolerance.
 const SLACK: [f64; 2] = [1e-6, 1.0];
 
-/// Roundings by which the search for touch-downs and that for the largest relative displacement may differ in a position.
+/// Relative difference, in units of ε, between a position in the search for touch-downs and in that for the largest relative displacement.
 const ROUNDINGS: f64 = 64.0;
 
-/// Returns a largest energy of the primary structure that is within the bound.
+/// Returns the largest energy of the primary structure if it is within the bound.
 ///
-/// A run with more energy than the force can supply (see [`Bare::most_energy`]) has lost all digits: its parameters are too many orders
-/// of magnitude apart, or, of a general method, its step or its tolerances do not suit them.
+/// A run with more energy than the force can supply (see [`Bare::most_energy`]) has lost all digits: its parameters are too many orders of
+/// magnitude apart, or the step or the tolerances of a general method do not suit them.
 ///
 /// # Errors
 /// [`SolverError::NonFinite`], [`SolverError::Implausible`].
-pub fn energy(
+pub fn check_energy(
     scene: &Scene,
     window: Window,
     settings: &Settings,
@@ -32,7 +32,7 @@ pub fn energy(
     if !value.is_finite() {
         return Err(SolverError::NonFinite { t: window.to });
     }
-    let most = most(scene, window);
+    let most = energy_limit(scene, window);
     let gained = value > most * (1.0 + SLACK[usize::from(!settings.method.is_exact())]);
     if gained || value < 0.0 || !(window.from..=window.to).contains(&time) {
         return Err(SolverError::Implausible { t: window.to, value, time, most });
@@ -40,12 +40,12 @@ pub fn energy(
     Ok(maximum)
 }
 
-/// Returns a largest value of what is measured that is within the bound: an energy, or a displacement or a velocity by the energy
-/// that the structure has at least there. Rounding may not put its time outside the window.
+/// Returns the largest value of a measure if it is within the bound. A displacement or a velocity is checked by the least energy that it
+/// implies. A time that rounding has put outside the window is moved to its end.
 ///
 /// # Errors
-/// As [`energy`].
-pub fn largest(
+/// As [`check_energy`].
+pub fn check_largest(
     scene: &Scene,
     window: Window,
     settings: &Settings,
@@ -54,7 +54,7 @@ pub fn largest(
 ) -> Result<Extreme, SolverError> {
     let Extreme { value, time } = maximum;
     if measure == Measure::Energy {
-        return energy(scene, window, settings, maximum);
+        return check_energy(scene, window, settings, maximum);
     }
     if window.from >= window.to {
         return Ok(maximum); // an empty window
@@ -69,23 +69,23 @@ pub fn largest(
         Measure::Velocity => bare.primary_energy(0.0, value),
         _ => 0.0,
     };
-    energy(scene, window, settings, Extreme { value: at_least, time })?;
+    check_energy(scene, window, settings, Extreme { value: at_least, time })?;
     Ok(Extreme { value, time })
 }
 
-/// The most energy that there can be at the end of a run, J.
-fn most(scene: &Scene, window: Window) -> f64 {
+/// The largest possible energy at the end of a run, J.
+fn energy_limit(scene: &Scene, window: Window) -> f64 {
     match &scene.damper {
         None => Bare::new(&scene.primary, &scene.forcing).most_energy(window.to),
         Some(damper) => Coupled::new(&scene.primary, &scene.forcing, damper).most_energy(window.to),
     }
 }
 
-/// Returns a response whose numbers are all finite and whose energy is within the bound.
+/// Returns a response if its numbers are all finite (but for forces of rigid walls) and its energy is within the bound.
 ///
 /// # Errors
-/// As [`energy`].
-pub fn response(
+/// As [`check_energy`].
+pub fn check_response(
     scene: &Scene,
     window: Window,
     settings: &Settings,
@@ -94,10 +94,15 @@ pub fn response(
     if window.from >= window.to {
         return Ok(found); // an empty window
     }
-    energy(scene, window, settings, found.e1_max)?;
+    check_energy(scene, window, settings, found.e1_max)?;
     let Extreme { value, time } = found.e2_max;
     if value.is_finite() && !(window.from..=window.to).contains(&time) {
-        return Err(SolverError::Implausible { t: window.to, value, time, most: most(scene, window) });
+        return Err(SolverError::Implausible {
+            t: window.to,
+            value,
+            time,
+            most: energy_limit(scene, window),
+        });
     }
     let numbers = [found.e2_max.value, found.relative_displacement_max, found.spring_deflection_max];
     let structure = found.structure.all().map(|largest| largest.value);
@@ -107,37 +112,37 @@ pub fn response(
     if all.copied().all(f64::is_finite) { Ok(found) } else { Err(SolverError::NonFinite { t: window.to }) }
 }
 
-/// The indentation, m, of a wall that was never touched, which is zero or negative. At positions of this size, m, rounding alone
-/// may put the damper slightly inside.
+/// The indentation, m, of a wall that was never touched, which must be zero or negative. At positions of this size, m, rounding alone may
+/// put the damper slightly inside; the result is then zero.
 ///
 /// # Errors
 /// [`SolverError::Missed`]: the indentation is larger than rounding can explain.
-pub fn untouched(depth: f64, position: f64, t: f64) -> Result<f64, SolverError> {
+pub fn check_untouched(depth: f64, position: f64, t: f64) -> Result<f64, SolverError> {
     if depth > ROUNDINGS * f64::EPSILON * position {
         return Err(SolverError::Missed { t, depth });
     }
     Ok(depth.min(0.0))
 }
 
-/// The same error with its time limited to the run: where digits are lost, the time of a step may be wrong too.
-pub fn error(window: Window, error: SolverError) -> SolverError {
-    let sound = |t: f64| if t.is_finite() { t.clamp(0.0, window.to) } else { window.to };
+/// The error with its time clamped to the run: where digits are lost, the time of a step may be wrong too.
+pub fn clamp_error_time(window: Window, error: SolverError) -> SolverError {
+    let clamped = |t: f64| if t.is_finite() { t.clamp(0.0, window.to) } else { window.to };
     match error {
-        SolverError::StepTooSmall { t, h } => SolverError::StepTooSmall { t: sound(t), h },
-        SolverError::TooFast { t, h, remedy } => SolverError::TooFast { t: sound(t), h, remedy },
-        SolverError::Contact { t } => SolverError::Contact { t: sound(t) },
+        SolverError::StepTooSmall { t, h } => SolverError::StepTooSmall { t: clamped(t), h },
+        SolverError::TooFast { t, h, remedy } => SolverError::TooFast { t: clamped(t), h, remedy },
+        SolverError::Contact { t } => SolverError::Contact { t: clamped(t) },
         SolverError::TooManySteps { t, limit, evaluations } => {
-            SolverError::TooManySteps { t: sound(t), limit, evaluations }
+            SolverError::TooManySteps { t: clamped(t), limit, evaluations }
         }
         SolverError::TooSlow { t, steps, needed, limit, remedy } => {
-            SolverError::TooSlow { t: sound(t), steps, needed, limit, remedy }
+            SolverError::TooSlow { t: clamped(t), steps, needed, limit, remedy }
         }
-        SolverError::Unstable { t } => SolverError::Unstable { t: sound(t) },
-        SolverError::NonFinite { t } => SolverError::NonFinite { t: sound(t) },
-        SolverError::RigidWalls { t } => SolverError::RigidWalls { t: sound(t) },
-        SolverError::Grazing { t } => SolverError::Grazing { t: sound(t) },
+        SolverError::Unstable { t } => SolverError::Unstable { t: clamped(t) },
+        SolverError::NonFinite { t } => SolverError::NonFinite { t: clamped(t) },
+        SolverError::RigidWalls { t } => SolverError::RigidWalls { t: clamped(t) },
+        SolverError::Grazing { t } => SolverError::Grazing { t: clamped(t) },
         SolverError::NoPeriod { .. } | SolverError::NoDerivatives { .. } => error,
-        SolverError::Missed { t, depth } => SolverError::Missed { t: sound(t), depth },
+        SolverError::Missed { t, depth } => SolverError::Missed { t: clamped(t), depth },
         SolverError::Implausible { .. } => error,
     }
 }
@@ -160,7 +165,7 @@ mod tests {
         };
         let window = Window { from: 1.0, to: 3.0 };
         let ask = |value, time, method| {
-            energy(&scene, window, &Settings { method, ..Settings::default() }, Extreme { value, time })
+            check_energy(&scene, window, &Settings { method, ..Settings::default() }, Extreme { value, time })
         };
         assert!(ask(36.0, 3.0, Method::Hybrid).is_ok());
         let refused = ask(36.1, 3.0, Method::Hybrid);
@@ -179,8 +184,8 @@ mod tests {
 
     #[test]
     fn contract_a_wall_that_was_never_touched_is_indented_by_rounding_alone() {
-        assert_eq!(untouched(-0.5, 1.0, 3.0), Ok(-0.5));
-        assert_eq!(untouched(1e-16, 1.0, 3.0), Ok(0.0));
-        assert_eq!(untouched(1e-12, 1.0, 3.0), Err(SolverError::Missed { t: 3.0, depth: 1e-12 }));
+        assert_eq!(check_untouched(-0.5, 1.0, 3.0), Ok(-0.5));
+        assert_eq!(check_untouched(1e-16, 1.0, 3.0), Ok(0.0));
+        assert_eq!(check_untouched(1e-12, 1.0, 3.0), Err(SolverError::Missed { t: 3.0, depth: 1e-12 }));
     }
 }

@@ -1,4 +1,4 @@
-//! Why a run could not be finished, and what helps.
+//! Why a run could not be finished, and the remedy.
 
 use std::fmt;
 
@@ -24,7 +24,7 @@ pub enum SolverError {
         /// The remedy.
         remedy: Remedy,
     },
-    /// The hybrid found no step for a contact: the contact force is lost to rounding beside the other forces, or they beside it.
+    /// The hybrid found no step for a contact: the contact force is lost to rounding relative to the other forces, or vice versa.
     #[error(
         "a contact at t = {} s cannot be followed: its stiffness is too many orders of magnitude from that of the springs; \
          check what it is made of: R, q, E1 to E4", plain(*.t)
@@ -47,7 +47,7 @@ pub enum SolverError {
         t: f64,
         /// The limit.
         limit: u64,
-        /// The limit on evaluations that follows from it, if it was that (see [`Budget`](crate::Budget)).
+        /// The limit on evaluations that follows from it, if that was exceeded (see [`Budget`](crate::Budget)).
         evaluations: Option<u64>,
     },
     /// The run would need many times the steps that it may take (see [`Budget`](crate::Budget)).
@@ -96,7 +96,7 @@ pub enum SolverError {
     Missed {
         /// End of the run, s.
         t: f64,
-        /// How far inside it is, m.
+        /// Its depth inside the wall, m.
         depth: f64,
     },
     /// A general method met rigid walls, whose impacts are jumps.
@@ -166,7 +166,7 @@ fn plain(value: f64) -> String {
     if value == 0.0 || (1e-4..1e7).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
 }
 
-/// The change that helps a run that cannot finish.
+/// The change that would let a run finish.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Remedy {
     /// The run is too long, not its steps too short.

@@ -1,5 +1,5 @@
-//! What a study makes small, and what it may set limits on: the largest value of a [`Measure`] in a window, and those of others from a
-//! time on, for any phase of the force. Only those that are asked for are computed.
+//! What a study minimises and may set limits on: the largest value of a [`Measure`] in a window, and those of additional measures from a
+//! time on, for any phase of the force. Only requested values are computed.
 
 use crate::decay::decay;
 use crate::energy_bound;
@@ -22,25 +22,25 @@ use crate::settings::{Settings, Window};
 use crate::simulate::e1_max;
 use retune_model::{Bare, Coupled, Measure, PerMeasure, Scene};
 
-/// The question put to a run.
+/// What to compute in a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ask {
-    /// What is measured.
+    /// The measure.
     pub measure: Measure,
     /// φ of the force `P cos(ωt + φ)`, rad. The run starts at t = 0.
     pub phase: f64,
-    /// What is observed too; `None` for nothing.
+    /// Additional measures to observe, if any.
     pub also: Option<Also>,
-    /// The run may end early, with any value above this one, in the unit of what is measured, once that exceeds it.
+    /// The run may end early, with any value above this one, in the unit of the measure, once the measure exceeds it.
     pub cutoff: f64,
 }
 
-/// Measures that are observed beside the one that is asked for.
+/// Measures that are observed in addition to [`Ask::measure`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Also {
-    /// Which.
+    /// The measures.
     pub measures: PerMeasure<bool>,
-    /// From when on, s: 0 for the whole run, whatever the window of what is asked for.
+    /// Start of their observation, s: 0 for the whole run, whatever the window of [`Ask::measure`].
     pub from: f64,
 }
 
@@ -60,11 +60,11 @@ impl Default for Ask {
 /// The largest values of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extremes {
-    /// Largest value of what is measured, in its unit, and when.
+    /// Largest value of the measure, in its unit, and when.
     pub largest: Extreme,
-    /// The largest values of [`Ask::also`]; 0 of what was not asked for, and of the damper where there is none.
+    /// The largest values of [`Ask::also`]; 0 for a measure that was not requested, and for those of the damper where there is none.
     pub reached: PerMeasure<f64>,
-    /// Whether the motion has settled; true where that was not asked.
+    /// Whether the motion has settled; true where this was not tested.
     pub settled: bool,
 }
 
@@ -81,7 +81,7 @@ impl Extremes {
 }
 
 /// The largest value of [`Ask::measure`] over a window, and those of [`Ask::also`] from its time to the end of the window. A [decay
-/// time](crate::decay_time) is that of the whole run, infinite where it is not within it.
+/// time](crate::decay_time) is that of the whole run, infinite where the motion does not decay within it.
 ///
 /// # Errors
 /// [`SolverError`] with the time reached.
@@ -92,8 +92,8 @@ pub fn extremes(
     ask: Ask,
 ) -> Result<Extremes, SolverError> {
     let decays = ask.measure == Measure::DecayTime;
-    let beside = ask.also.is_some_and(|also| also.measures.get(Measure::DecayTime));
-    if !decays && !beside {
+    let additional = ask.also.is_some_and(|also| also.measures.get(Measure::DecayTime));
+    if !decays && !additional {
         return largest_values(scene, window, settings, ask);
     }
     let never = Extreme { value: f64::INFINITY, time: window.to };
@@ -107,13 +107,13 @@ pub fn extremes(
     if decays {
         found.largest = decay;
     }
-    if beside {
+    if additional {
         found.reached.set(Measure::DecayTime, decay.value);
     }
     Ok(found)
 }
 
-/// The same for largest values alone.
+/// [`extremes`] without decay times.
 fn largest_values(
     scene: &Scene,
     window: Window,
@@ -127,15 +127,15 @@ fn largest_values(
     let seen = match &scene.damper {
         None => {
             let system = Bare::new(&scene.primary, &scene.forcing).with_phase(ask.phase);
-            in_bare(&system, window, settings, ask)
+            bare_extremes(&system, window, settings, ask)
         }
         Some(damper) => {
             let system = Coupled::new(&scene.primary, &scene.forcing, damper).with_phase(ask.phase);
-            in_coupled(&system, window, settings, ask)
+            coupled_extremes(&system, window, settings, ask)
         }
     };
-    let seen = seen.map_err(|error| energy_bound::error(window, error))?;
-    let largest = energy_bound::largest(scene, window, settings, ask.measure, seen.largest)?;
+    let seen = seen.map_err(|error| energy_bound::clamp_error_time(window, error))?;
+    let largest = energy_bound::check_largest(scene, window, settings, ask.measure, seen.largest)?;
     Ok(Extremes { largest, ..seen })
 }
 
@@ -150,12 +150,17 @@ pub(crate) fn bare_values(
     for measure in also.measures.chosen() {
         let ask = Ask { measure, ..Ask::default() };
         let window = Window { from: also.from.min(to), to };
-        reached.set(measure, in_bare(system, window, settings, ask)?.largest.value.max(0.0));
+        reached.set(measure, bare_extremes(system, window, settings, ask)?.largest.value.max(0.0));
     }
     Ok(reached)
 }
 
-fn in_bare(system: &Bare, window: Window, settings: &Settings, ask: Ask) -> Result<Extremes, SolverError> {
+fn bare_extremes(
+    system: &Bare,
+    window: Window,
+    settings: &Settings,
+    ask: Ask,
+) -> Result<Extremes, SolverError> {
     let plan = Plan::of(system, settings, Request::Largest { window, late: window.from });
     let largest = match observed(ask.measure) {
         Observed::Motion(quantity) => {
@@ -175,41 +180,41 @@ fn in_bare(system: &Bare, window: Window, settings: &Settings, ask: Ask) -> Resu
     Ok(Extremes { largest, reached: also.unwrap_or_default(), settled: true })
 }
 
-fn in_coupled(
+fn coupled_extremes(
     system: &Coupled,
     window: Window,
     settings: &Settings,
     ask: Ask,
 ) -> Result<Extremes, SolverError> {
-    let mut before = beside(system, ask);
+    let mut before = additional_maxima(system, ask);
     let mut seen = maxima(system, ask);
     let late = ask.also.map_or(window.from, |also| also.from);
     let plan = Plan::of(system, settings, Request::Largest { window, late });
     system.follow_for(plan, window, settings, &mut before, &mut seen)?;
-    let (before, seen) = (values(before.as_ref()), read(&seen));
+    let (before, seen) = (values(before.as_ref()), read_maxima(&seen));
     Ok(Extremes { reached: before.max(seen.reached), ..seen })
 }
 
-/// The largest values from a time on.
-pub(crate) type Beside<'a> = Since<LargestValues<'a>>;
+/// Observes the largest values of the additional measures from a time on.
+pub(crate) type AdditionalMaxima<'a> = Since<LargestValues<'a>>;
 
-/// What is asked for, and what is asked for beside it.
-pub(crate) type Maxima<'a> = (Peak<'a>, Option<Beside<'a>>);
+/// Observers of the requested measure and of the additional ones.
+pub(crate) type Maxima<'a> = (Peak<'a>, Option<AdditionalMaxima<'a>>);
 
-pub(crate) fn beside(system: &Coupled, ask: Ask) -> Option<Beside<'_>> {
+pub(crate) fn additional_maxima(system: &Coupled, ask: Ask) -> Option<AdditionalMaxima<'_>> {
     ask.also.map(|also| Since::new(LargestValues::new(system, also.measures), also.from))
 }
 
 pub(crate) fn maxima(system: &Coupled, ask: Ask) -> Maxima<'_> {
-    (Peak::new(system, ask.measure, ask.cutoff), beside(system, ask))
+    (Peak::new(system, ask.measure, ask.cutoff), additional_maxima(system, ask))
 }
 
-pub(crate) fn read((peak, beside): &Maxima<'_>) -> Extremes {
-    Extremes { largest: peak.record(), reached: values(beside.as_ref()), settled: true }
+pub(crate) fn read_maxima((peak, additional): &Maxima<'_>) -> Extremes {
+    Extremes { largest: peak.record(), reached: values(additional.as_ref()), settled: true }
 }
 
-fn values(beside: Option<&Beside<'_>>) -> PerMeasure<f64> {
-    beside.map_or_else(PerMeasure::default, |since| since.observer.values())
+fn values(additional: Option<&AdditionalMaxima<'_>>) -> PerMeasure<f64> {
+    additional.map_or_else(PerMeasure::default, |since| since.observer.values())
 }
 
 /// The observer of a [`Measure`].
@@ -238,7 +243,7 @@ impl<'a> Peak<'a> {
     }
 }
 
-/// What is observed for a measure: of the structure's motion, the quantity whose largest size it is; of the damper, the range of its
+/// What is observed for a measure: the quantity of the structure's motion whose largest magnitude it is, or the range of the damper's
 /// displacement.
 enum Observed<Q> {
     Energy,
@@ -303,18 +308,18 @@ impl Observer<4> for Peak<'_> {
             Self::Damper(range, _) => range.impact(impact),
         }
     }
-    fn seam(&mut self) {
+    fn discontinuity(&mut self) {
         match self {
-            Self::Energy(e1) => Observer::<4>::seam(e1),
-            Self::Motion(size) => size.seam(),
-            Self::Damper(range, _) => range.seam(),
+            Self::Energy(e1) => Observer::<4>::discontinuity(e1),
+            Self::Motion(size) => size.discontinuity(),
+            Self::Damper(range, _) => range.discontinuity(),
         }
     }
-    fn looks(&self) -> u64 {
+    fn search_work(&self) -> u64 {
         match self {
-            Self::Energy(e1) => Observer::<4>::looks(e1),
-            Self::Motion(size) => size.looks(),
-            Self::Damper(range, _) => range.looks(),
+            Self::Energy(e1) => Observer::<4>::search_work(e1),
+            Self::Motion(size) => size.search_work(),
+            Self::Damper(range, _) => range.search_work(),
         }
     }
     fn satisfied(&self) -> bool {

@@ -1,10 +1,10 @@
 //! The motion of a damper on a forced structure in time.
 //!
-//! [`simulate`] runs a scene and returns its largest energies, forces and displacements; [`e1_max`] returns the largest energy of
-//! the structure alone, [`extremes`] and [`settled`] the values on which limits are set, [`trajectory`] the motion row by row. The
-//! default method, the hybrid, is exact between contacts and solves each contact to a tolerance; `ode23s`, `ode45` and other general
-//! methods ([`methods`]) are there to be compared with. A motion is handed over piece by piece ([`observe::Segment`]) to observers
-//! ([`observe::Observer`]), and nothing is stored on the way.
+//! [`simulate`] runs a scene and returns its largest energies, forces and displacements; [`e1_max`] returns the largest energy of the
+//! structure alone, [`extremes`] and [`settled`] the values on which limits are set, [`trajectory`] the motion row by row. The default
+//! method, the hybrid, is exact between contacts and solves each contact to a tolerance; `ode23s`, `ode45` and other general methods
+//! ([`methods`]) serve as a comparison. A motion is passed segment by segment ([`observe::Segment`]) to observers ([`observe::Observer`]);
+//! no segment is stored.
 //!
 //! ```
 //! use retune_model::Scene;
@@ -33,8 +33,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Inside, files import downwards only: `simulate`, `extremes`, `settle` and `trajectory` ask; `plan` chooses the smallest model
-//! that is exact, and `run` follows the motion by it; `recurrence` ends a run that repeats; `hybrid` alternates flight (`linear`) and contact (`contact`); `observe` keeps the answers; `motion` is the ground floor.
+//! Inside, files import downwards only. `simulate`, `extremes`, `settle` and `trajectory` are the entry points; `plan` chooses the smallest
+//! model that is exact, and `run` follows the motion with it; `recurrence` ends a run that repeats; `hybrid` alternates flight (`linear`)
+//! and contact (`contact`); `observe` collects the results; `motion` is the lowest layer.
 #![deny(clippy::print_stdout, clippy::print_stderr, missing_docs)]
 
 mod budget;

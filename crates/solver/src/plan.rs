@@ -1,7 +1,6 @@
-//! The plan of a run: the smallest model that is exact for what is asked of a system, chosen once.
+//! The plan of a run: the smallest model that is exact for a request, chosen once.
 //!
-//! Whoever computes a motion asks [`Plan::of`] and does what it says. No other file looks at the name of a method, or asks whether there
-//! are walls to touch, to choose between models.
+//! All code that computes a motion uses [`Plan::of`]. No other file chooses between models by the method or by the presence of walls.
 
 use crate::hybrid::contact_free::clears_walls;
 use crate::recurrence::repeats::has_room;
@@ -10,29 +9,29 @@ use crate::system::LinearSystem;
 use retune_model::{Bare, Coupled};
 use std::f64::consts::TAU;
 
-/// What is asked of a system.
+/// What is requested of a system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Request {
-    /// Its motion, from whatever state.
+    /// Its motion from any state.
     Motion,
     /// The largest energy of the structure in a window of the run from its start.
     Energy(Window),
-    /// Largest values in a window of that run; observed beside them is the run from `late` (s) on.
+    /// Largest values in a window of the run from its start; additional measures are observed from `late` (s) on.
     Largest { window: Window, late: f64 },
-    /// The largest values of the motion on which that run settles.
+    /// The largest values of the motion to which the run from its start settles.
     Settled,
 }
 
-/// How it is answered.
+/// How a request is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Plan {
-    /// In closed form: of the bare structure, or of a damper that provably stays off both walls.
+    /// In closed form: the bare structure, or a damper that provably touches neither wall.
     Closed,
-    /// By the exact flow, step by step: there is no wall to touch.
+    /// By the exact flow, step by step: there are no walls.
     Free,
-    /// By flight and contact in turn.
+    /// By flight and contact alternately.
     Hybrid,
-    /// The same, and the run may end when its motion repeats, once as much has been observed from this time (s) on.
+    /// As [`Self::Hybrid`], but the run may end once its motion repeats and one repetition has been observed from this time (s) on.
     UntilItRepeats(f64),
     /// By a general method.
     General(General),
@@ -49,11 +48,11 @@ pub enum General {
     Euler,
 }
 
-/// What a plan must know of a system.
+/// The properties of a system that determine its plan.
 pub trait Planned<const N: usize>: LinearSystem<N> {
-    /// Whether there is a wall to touch.
+    /// Whether there are walls.
     fn has_walls(&self) -> bool;
-    /// Whether it provably touches none in the run from its start, and has a closed form.
+    /// Whether it provably touches no wall in the run from its start, and has a closed form.
     fn clears_walls(&self) -> bool;
     /// Largest energy of the structure in its steady motion without walls, J; infinite if there is none.
     fn steady_energy(&self) -> f64;
@@ -94,7 +93,7 @@ impl Plan {
         }
     }
 
-    /// A run is not looked at for repeating where too few periods would be left to it.
+    /// Tests a run for repetition only if it is long enough for the test to pay.
     fn until_it_repeats<const N: usize>(system: &impl Planned<N>, window: Window, late: f64) -> Self {
         let pays = has_room(system.period(), window.from.max(late), window.to);
         if pays { Self::UntilItRepeats(late) } else { Self::Hybrid }

@@ -1,4 +1,4 @@
-//! The answer to a run: largest values, counts, the final state and the work.
+//! The result of a run: largest values, counts, the final state and the work.
 
 use retune_model::Measure;
 use serde::{Deserialize, Serialize};
@@ -27,15 +27,15 @@ pub enum SceneKind {
 /// The work of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
-    /// Steps taken (of the hybrid: flight and contact steps).
+    /// Steps taken (by the hybrid: flight and contact steps).
     pub steps: u64,
     /// Steps tried and rejected.
     pub rejected: u64,
-    /// Evaluations of a right-hand side (of the hybrid: of the contact equations; an exact flight step needs none).
+    /// Evaluations of a right-hand side (by the hybrid: of the contact equations; an exact flight step needs none).
     pub evaluations: u64,
 }
 
-/// Largest values of the motion of the primary structure, each located as a maximum of its size, and when they are reached.
+/// Largest values of the motion of the primary structure, each located as a maximum of its magnitude, and when they are reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StructureMaxima {
     /// `|x1|`, m.
@@ -67,7 +67,7 @@ pub struct Response {
     pub structure: StructureMaxima,
     /// Touch-downs on the primary structure and on the obstacle.
     pub impacts: [u64; 2],
-    /// Largest contact forces on the primary structure and on the obstacle, N; infinite of a rigid wall that was struck.
+    /// Largest contact forces on the primary structure and on the obstacle, N; infinite for a rigid wall that was struck.
     pub force_max: [f64; 2],
     /// Largest contact pressures on the primary structure and on the obstacle, N/m².
     pub pressure_max: [f64; 2],
@@ -84,7 +84,7 @@ pub struct Response {
 }
 
 impl Response {
-    /// The largest value of a measure, in its unit; of contact force and pressure, that on either wall.
+    /// The largest value of a measure, in its unit; for contact force and pressure, the larger of both walls.
     pub fn largest(&self, measure: Measure) -> f64 {
         match measure {
             Measure::Energy => self.e1_max.value,
@@ -95,7 +95,7 @@ impl Response {
             Measure::Stroke => self.spring_deflection_max,
             Measure::ContactForce => self.force_max[0].max(self.force_max[1]),
             Measure::ContactPressure => self.pressure_max[0].max(self.pressure_max[1]),
-            // That takes runs of its own.
+            // A decay time takes separate runs.
             Measure::DecayTime => f64::NAN,
             Measure::Stationary(_) => self.largest(measure.of_run()),
         }

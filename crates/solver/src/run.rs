@@ -20,8 +20,8 @@ use retune_model::{Bare, Coupled, Scene};
 /// The state at the end of a run, and its work.
 type Followed<const N: usize> = Result<([f64; N], Work), SolverError>;
 
-/// The least number of steps of a run of `seconds` (s) by the default method, unless it [`leaves_out_a_fast_part`]: those of its flight.
-/// Contacts add to them.
+/// A lower bound on the number of steps of a run of `seconds` (s) by the default method, unless it [`leaves_out_a_fast_part`]: its flight
+/// steps. Contacts add to them.
 pub fn least_steps(scene: &Scene, seconds: f64) -> f64 {
     let Scene { primary, forcing, damper } = scene;
     let bare = Bare::new(primary, forcing);
@@ -29,14 +29,14 @@ pub fn least_steps(scene: &Scene, seconds: f64) -> f64 {
         None => Flow::new(bare.linear(), seconds).step(),
         Some(damper) => Flow::new(Coupled::new(primary, forcing, damper).linear(), seconds).step(),
     };
-    // Each piece of a record is a step at least.
-    let over = longest_step(bare.sampled_force(), step);
+    // Each piece of a record takes at least one step.
+    let paced_step = longest_step(bare.sampled_force(), step);
     let paced = seconds.min(bare.paced_until());
-    paced / over + (seconds - paced) / step
+    paced / paced_step + (seconds - paced) / step
 }
 
-/// Whether a run of `seconds` (s) by the default method leaves out a fast part of its flights once that has decayed, as that of a strong
-/// dashpot, and flies on in longer steps.
+/// Whether a run of `seconds` (s) by the default method leaves out a fast part of the motion (such as that of a strong dashpot) once it has
+/// decayed, and continues its flight in longer steps.
 pub fn leaves_out_a_fast_part(scene: &Scene, seconds: f64) -> bool {
     let Scene { primary, forcing, damper } = scene;
     let bare = Bare::new(primary, forcing);
@@ -53,8 +53,8 @@ pub fn leaves_out_a_fast_part(scene: &Scene, seconds: f64) -> bool {
 
 /// A system whose run from its start at t = 0 can be followed by any plan.
 pub trait Follow<const N: usize>: Planned<N> {
-    /// Follows it to the end of a window, or until its motion repeats where the plan allows: `before` sees the motion to the window,
-    /// `observer` that inside it. Returns the last state that was reached, and the work.
+    /// Follows the motion to the end of a window, or until it repeats where the plan allows this. `before` observes the motion before the
+    /// window, `observer` the motion inside it. Returns the last state reached, and the work.
     ///
     /// # Errors
     /// [`SolverError`] with the time reached.
@@ -69,8 +69,8 @@ pub trait Follow<const N: usize>: Planned<N> {
         self.follow_for(plan, window, settings, before, observer)
     }
 
-    /// The same, compiled for this observer, and some per cent faster: for the runs that a search consists of. Compiled for every observer, loops
-    /// over time would make a build half as long again.
+    /// [`Self::follow`] compiled for this observer, which is a few per cent faster: for the runs of a search. Compiling the loops over time
+    /// for every observer would make a build half as long again.
     ///
     /// # Errors
     /// As [`Self::follow`].
@@ -94,7 +94,7 @@ impl Follow<2> for Bare {
         observer: &mut (impl Observer<2> + ?Sized),
     ) -> Followed<2> {
         match plan {
-            Plan::General(method) => follow_by(method, self, window, settings, before, observer),
+            Plan::General(method) => follow_general(method, self, window, settings, before, observer),
             _ => follow_free(self, window, settings, before, observer),
         }
     }
@@ -111,7 +111,7 @@ impl Follow<4> for Coupled {
     ) -> Followed<4> {
         match plan {
             Plan::General(_) if self.is_rigid() => Err(SolverError::RigidWalls { t: 0.0 }),
-            Plan::General(method) => follow_by(method, self, window, settings, before, observer),
+            Plan::General(method) => follow_general(method, self, window, settings, before, observer),
             Plan::Closed | Plan::Free => follow_free(self, window, settings, before, observer),
             Plan::UntilItRepeats(late) => {
                 follow_until_it_repeats(self, window, late, settings, before, observer)
@@ -128,7 +128,7 @@ impl Follow<4> for Coupled {
     }
 }
 
-/// Follows what has no walls to touch.
+/// Follows a system that has no walls or provably touches none.
 fn follow_free<S: LinearSystem<N>, const N: usize>(
     system: &S,
     window: Window,
@@ -144,8 +144,8 @@ fn follow_free<S: LinearSystem<N>, const N: usize>(
     Ok((free.state(), free.work))
 }
 
-/// Follows any system by a general method, whose loop calls observers through a table.
-fn follow_by<S: LinearSystem<N>, const N: usize>(
+/// Follows any system by a general method, whose loop calls observers by dynamic dispatch.
+fn follow_general<S: LinearSystem<N>, const N: usize>(
     method: General,
     system: &S,
     window: Window,
@@ -162,7 +162,8 @@ where
     Ok((run.state(), run.work))
 }
 
-/// Continues a run to time `to` (s) by a general method. Its steps end where the force jumps or bends, and none sees the force beyond.
+/// Continues a run to time `to` (s) by a general method. Its steps end where the force or its slope jumps, and no step evaluates the force
+/// beyond.
 fn follow_stretches<'a, S: LinearSystem<N>, const N: usize>(
     method: General,
     system: &'a S,
@@ -173,13 +174,13 @@ fn follow_stretches<'a, S: LinearSystem<N>, const N: usize>(
 where
     Const<N>: DimMin<Const<N>, Output = Const<N>>,
 {
-    run.allow(to);
+    run.extend_budget(to);
     while let Some(stretch) = system.structure().stretch(run.time()) {
-        observer.seam();
+        observer.discontinuity();
         let during = system.during(stretch);
-        let mut part = run.on(&during);
+        let mut part = run.with_system(&during);
         method.follow(&mut part, stretch.to.min(to), observer)?;
-        run = part.on(system);
+        run = part.with_system(system);
         if stretch.to >= to || observer.satisfied() {
             return Ok(run);
         }
@@ -188,16 +189,16 @@ where
     Ok(run)
 }
 
-/// A structure and its damper, followed from any moment on by the plan for its motion.
+/// Follows a structure and its damper from any moment on, by the plan for its motion.
 pub struct Follower<'a> {
     system: &'a Coupled,
     settings: Settings,
-    way: Way<'a>,
+    propagator: Propagator<'a>,
 }
 
-enum Way<'a> {
+enum Propagator<'a> {
     Exact(Box<Hybrid<'a>>),
-    /// Without walls, in steps of at most so many seconds.
+    /// Without walls, in steps of at most this many seconds.
     Free(f64),
     Steps(General),
 }
@@ -205,14 +206,14 @@ enum Way<'a> {
 impl<'a> Follower<'a> {
     /// Prepares for stretches of at most `longest` seconds, each of which may take [`Settings::max_steps`] steps.
     pub fn new(system: &'a Coupled, settings: &Settings, longest: f64) -> Self {
-        let way = match Plan::of(system, settings, Request::Motion) {
-            Plan::General(method) => Way::Steps(method),
-            Plan::Closed | Plan::Free => Way::Free(longest),
+        let propagator = match Plan::of(system, settings, Request::Motion) {
+            Plan::General(method) => Propagator::Steps(method),
+            Plan::Closed | Plan::Free => Propagator::Free(longest),
             Plan::Hybrid | Plan::UntilItRepeats(_) => {
-                Way::Exact(Box::new(Hybrid::new(system, settings.rtol, longest, settings.max_steps)))
+                Propagator::Exact(Box::new(Hybrid::new(system, settings.rtol, longest, settings.max_steps)))
             }
         };
-        Self { system, settings: *settings, way }
+        Self { system, settings: *settings, propagator }
     }
 
     /// Follows the motion to time `to` (s) or until the observer is satisfied.
@@ -225,19 +226,19 @@ impl<'a> Follower<'a> {
         to: f64,
         observer: &mut dyn Observer<4>,
     ) -> Result<Motion, SolverError> {
-        match &mut self.way {
-            Way::Exact(hybrid) => {
+        match &mut self.propagator {
+            Propagator::Exact(hybrid) => {
                 hybrid.work = Work::default();
                 hybrid.propagate(from, to, observer)
             }
-            Way::Free(longest) => {
+            Propagator::Free(longest) => {
                 let mut free =
                     ContactFree::new(self.system, *longest, self.settings.max_steps).from(from.t, from.y);
                 free.propagate(to, observer)?;
                 Ok(Motion { t: to, y: free.state(), phase: Phase::Flight })
             }
-            Way::Steps(_) if self.system.is_rigid() => Err(SolverError::RigidWalls { t: from.t }),
-            Way::Steps(method) => {
+            Propagator::Steps(_) if self.system.is_rigid() => Err(SolverError::RigidWalls { t: from.t }),
+            Propagator::Steps(method) => {
                 let longest = self.settings.longest_step(to - from.t);
                 let run = Run::new(self.system, &self.settings, from.t, from.y, longest);
                 let run = follow_stretches(*method, self.system, run, to, observer)?;

@@ -75,16 +75,17 @@ pub enum Contacts {
 pub struct Settings {
     /// The method.
     pub method: Method,
-    /// How contacts are met by every method but the hybrid.
+    /// How every method but the hybrid treats contacts.
     pub contacts: Contacts,
     /// Relative tolerance of a step.
     pub rtol: f64,
     /// Absolute tolerance of a step, in the units of each component of the state (m, m/s). The hybrid needs none.
     pub atol: f64,
-    /// Longest step, s, of every method but the hybrid (MATLAB's `MaxStep`); `None` for a tenth of the run. A method of fixed
-    /// step takes this one; `None` for [`Settings::FIXED_STEP`].
+    /// Longest step, s, of every method but the hybrid (MATLAB's `MaxStep`); `None` for a tenth of the run. A fixed-step method takes this
+    /// step; `None` for [`Settings::FIXED_STEP`].
     pub step: Option<f64>,
-    /// Most steps a run may take, or a quarter as many evaluations (see [`Budget`](crate::Budget)), before it is refused as [`SolverError::TooManySteps`](crate::SolverError::TooManySteps).
+    /// Most steps a run may take, or a quarter as many evaluations (see [`Budget`](crate::Budget)), before it is aborted with
+    /// [`SolverError::TooManySteps`](crate::SolverError::TooManySteps).
     pub max_steps: u64,
 }
 
@@ -102,10 +103,10 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Step of a method of fixed step that was given none, 1 ms.
+    /// Default step of a fixed-step method, 1 ms.
     pub const FIXED_STEP: f64 = 1e-3;
 
-    /// The same by the exact method.
+    /// These settings with the exact method.
     #[must_use]
     pub fn exact(self) -> Self {
         Self { method: Method::Hybrid, ..self }
@@ -124,7 +125,7 @@ impl Settings {
 /// A span of time over which maxima are taken, `0 <= from < to`, s. Every run starts at rest at t = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
-    /// Start t0 of the observation; the motion before it is a transient that counts for nothing.
+    /// Start t0 of the observation; the motion before it is a transient and is ignored.
     pub from: f64,
     /// End T of the run.
     pub to: f64,

@@ -1,10 +1,10 @@
 //! Simulations: a scene, a window of time and a method go in, largest values and counts come out.
 
-use crate::collisions::{Collisions, Touched};
+use crate::collisions::{CollisionObserver, Collisions};
 use crate::energy_bound;
 use crate::error::SolverError;
 use crate::hybrid::contact_free::ContactFree;
-use crate::losses::{Losses, Lost};
+use crate::losses::{LossObserver, Losses};
 use crate::observe::Magnitude;
 use crate::observe::contact_forces::ContactForces;
 use crate::observe::counters::{TouchDownTimes, TouchDowns};
@@ -42,8 +42,8 @@ pub fn e1_max(
         }
     };
     found
-        .map_err(|error| energy_bound::error(window, error))
-        .and_then(|e1| energy_bound::energy(scene, window, settings, e1))
+        .map_err(|error| energy_bound::clamp_error_time(window, error))
+        .and_then(|e1| energy_bound::check_energy(scene, window, settings, e1))
 }
 
 fn largest_energy<S: Follow<N>, const N: usize>(
@@ -78,10 +78,10 @@ pub fn simulate(scene: &Scene, window: Window, settings: &Settings) -> Result<Re
             simulate_coupled(&system, window, settings, &mut Unobserved)
         }
     };
-    bounded(scene, window, settings, found)
+    check_bounds(scene, window, settings, found)
 }
 
-/// The same, and of the same run its losses and its contacts with structure and obstacle.
+/// [`simulate`] with the energy losses of the run and its contacts with structure and obstacle.
 ///
 /// # Errors
 /// [`SolverError`] with the time reached.
@@ -93,46 +93,46 @@ pub fn simulate_in_detail(
     match &scene.damper {
         None => {
             let system = Bare::new(&scene.primary, &scene.forcing);
-            let mut lost = Lost::new(&system);
+            let mut lost = LossObserver::new(&system);
             let found = simulate_bare(&system, window, settings, &mut lost);
-            Ok((bounded(scene, window, settings, found)?, lost.all(), [Collisions::NONE; 2]))
+            Ok((check_bounds(scene, window, settings, found)?, lost.losses(), [Collisions::NONE; 2]))
         }
         Some(damper) => {
             let system = Coupled::new(&scene.primary, &scene.forcing, damper);
-            let mut beside = (Lost::new(&system), Touched::new(&system));
-            let found = simulate_coupled(&system, window, settings, &mut beside);
-            let (lost, touched) = beside;
-            Ok((bounded(scene, window, settings, found)?, lost.all(), touched.walls))
+            let mut extra = (LossObserver::new(&system), CollisionObserver::new(&system));
+            let found = simulate_coupled(&system, window, settings, &mut extra);
+            let (lost, touched) = extra;
+            Ok((check_bounds(scene, window, settings, found)?, lost.losses(), touched.walls))
         }
     }
 }
 
-/// A response within the bound on the energy that the force can have given.
-fn bounded(
+/// Checks a response against the bound on the energy that the force can supply.
+fn check_bounds(
     scene: &Scene,
     window: Window,
     settings: &Settings,
     found: Result<Response, SolverError>,
 ) -> Result<Response, SolverError> {
-    let response = found.map_err(|error| energy_bound::error(window, error))?;
-    energy_bound::response(scene, window, settings, response)
+    let response = found.map_err(|error| energy_bound::clamp_error_time(window, error))?;
+    energy_bound::check_response(scene, window, settings, response)
 }
 
 fn simulate_bare(
     system: &Bare,
     window: Window,
     settings: &Settings,
-    beside: &mut dyn Observer<2>,
+    extra: &mut dyn Observer<2>,
 ) -> Result<Response, SolverError> {
     let e1 = RunningMaximum::new(BareEnergy::new(system), f64::INFINITY);
-    let mut seen = ((e1, largest_of(system)), beside);
+    let mut seen = ((e1, structure_observers(system)), extra);
     let plan = Plan::of(system, settings, Request::Motion);
     let (state, work) = system.follow(plan, window, settings, &mut Unobserved, &mut seen)?;
     let ((e1, structure), _) = seen;
     Ok(Response {
         e1_max: e1.record(),
         e2_max: Extreme { value: 0.0, time: window.from },
-        structure: maxima(&structure, window),
+        structure: structure_maxima(&structure, window),
         impacts: [0; 2],
         force_max: [0.0; 2],
         pressure_max: [0.0; 2],
@@ -145,9 +145,9 @@ fn simulate_bare(
 }
 
 /// Observers of the largest displacement, velocity and acceleration of the structure and of its largest force on the ground.
-type Largest<'a, S, const N: usize> = [Magnitude<StructureMotion<'a, S, N>>; 4];
+type StructureObservers<'a, S, const N: usize> = [Magnitude<StructureMotion<'a, S, N>>; 4];
 
-fn largest_of<S: Structure<N>, const N: usize>(system: &S) -> Largest<'_, S, N> {
+fn structure_observers<S: Structure<N>, const N: usize>(system: &S) -> StructureObservers<'_, S, N> {
     let quantities = [
         StructureMotion::displacement,
         StructureMotion::velocity,
@@ -157,8 +157,11 @@ fn largest_of<S: Structure<N>, const N: usize>(system: &S) -> Largest<'_, S, N> 
     quantities.map(|quantity| Magnitude::new(|sign| quantity(system, sign), f64::INFINITY))
 }
 
-/// What they have seen. Rounding may not put a time outside the window.
-fn maxima<S: Structure<N>, const N: usize>(seen: &Largest<'_, S, N>, window: Window) -> StructureMaxima {
+/// Their records. Times that rounding has put outside the window are moved to its ends.
+fn structure_maxima<S: Structure<N>, const N: usize>(
+    seen: &StructureObservers<'_, S, N>,
+    window: Window,
+) -> StructureMaxima {
     let [displacement, velocity, acceleration, ground_force] = seen.each_ref().map(|largest| {
         let Extreme { value, time } = largest.record();
         let time = if time > window.to { window.to } else { time };
@@ -171,7 +174,7 @@ fn simulate_coupled(
     system: &Coupled,
     window: Window,
     settings: &Settings,
-    beside: &mut dyn Observer<4>,
+    extra: &mut dyn Observer<4>,
 ) -> Result<Response, SolverError> {
     let position = |sign: f64| RunningMaximum::new(RelativePosition::new(system, sign), f64::INFINITY);
     let e1 = RunningMaximum::new(PrimaryEnergy::new(system), f64::INFINITY);
@@ -182,9 +185,9 @@ fn simulate_coupled(
         (
             (
                 [1.0, -1.0].map(position),
-                (TouchDowns::default(), (ContactForces::of(system), largest_of(system))),
+                (TouchDowns::default(), (ContactForces::of(system), structure_observers(system))),
             ),
-            beside,
+            extra,
         ),
     );
     let plan = Plan::of(system, settings, Request::Motion);
@@ -200,12 +203,12 @@ fn simulate_coupled(
     if settings.method.is_exact() {
         for side in Side::BOTH {
             let i = side as usize;
-            // One that starts at a wall, or inside it, is in contact without a touch-down.
+            // A damper that starts at a wall, or inside it, is in contact without a touch-down.
             let starts_there = system.indentation(&system.start())[i] >= 0.0;
             if !starts_there && before.0[i] + impacts[i] == 0 {
                 let reach = system.bare().reach(e1_max.value, final_state[0], window.to - window.from);
                 let position = 2.0 * reach + system.rest_distance() + relative_displacement_max;
-                depths[i] = energy_bound::untouched(depths[i], position, window.to)?;
+                depths[i] = energy_bound::check_untouched(depths[i], position, window.to)?;
             }
         }
     }
@@ -221,7 +224,7 @@ fn simulate_coupled(
     Ok(Response {
         e1_max,
         e2_max: e2.record(),
-        structure: maxima(&structure, window),
+        structure: structure_maxima(&structure, window),
         impacts,
         force_max,
         pressure_max: match system.is_rigid() {

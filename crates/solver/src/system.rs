@@ -21,15 +21,15 @@ pub trait System<const N: usize> {
     }
 }
 
-/// A system whose flow between contacts is linear: `y' = A (y - origin) + b f`, with a force `f` that turns or is linear in time.
+/// A system whose flow between contacts is linear: `y' = A (y - origin) + b f`, with a force `f` that is harmonic or linear in time.
 pub trait LinearSystem<const N: usize>: System<N> {
     /// The primary structure, which the force acts on.
     fn structure(&self) -> &Bare;
-    /// The same as if a stretch of time went on for ever.
+    /// This system with the force of one stretch of time, continued indefinitely.
     fn during(&self, stretch: Stretch) -> Self
     where
         Self: Sized;
-    /// The numbers of that flow.
+    /// The coefficients of that flow.
     fn linear(&self) -> Linear<N>;
     /// The state at t = 0.
     fn start(&self) -> [f64; N];
@@ -58,7 +58,7 @@ pub struct Linear<const N: usize> {
     pub columns: [[f64; N]; N],
     /// `b`.
     pub input: [f64; N],
-    /// What the partner of the force does where a fast part of the motion has decayed and is left out: that part follows the force.
+    /// The input of the force's partner where a decayed fast part of the motion is left out: that part follows the force.
     pub partner: Option<[f64; N]>,
     /// The state of rest.
     pub origin: [f64; N],
@@ -68,12 +68,12 @@ pub struct Linear<const N: usize> {
     pub returns: f64,
     /// A bound on the norm of `A` in the energy norm and on ω, 1/s: the flow has no shorter time scale than its inverse.
     pub rate: f64,
-    /// Its largest contribution, in the symbols of a study file.
+    /// The largest contribution to `rate`, in the symbols of a study file.
     pub fastest: &'static str,
 }
 
-/// The flow while a rigid wall holds the damper: both bodies as one.
-pub(crate) fn held(system: &Coupled) -> Linear<4> {
+/// The linear equations while a rigid wall holds the damper: both bodies move as one.
+pub(crate) fn held_linear(system: &Coupled) -> Linear<4> {
     let ((a, input), [frequency, returns]) = (system.held_linear_part(), system.bare().turning());
     Linear {
         columns: columns(&a),

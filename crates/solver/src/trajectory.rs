@@ -53,7 +53,7 @@ pub struct Sample {
     pub forces: [f64; 2],
     /// Why it is recorded.
     pub moment: Moment,
-    /// The wall of the contact that it is a moment of; none of [`Moment::Grid`] and [`Moment::EnergyMax`].
+    /// The wall of the contact to which the moment belongs; `None` for [`Moment::Grid`] and [`Moment::EnergyMax`].
     pub wall: Option<Side>,
 }
 
@@ -74,7 +74,7 @@ impl Rows {
 }
 
 /// Visits the motion in the order of time at `window.from + k interval` (s) for `k = 0, 1, …` up to the end of the window and, if
-/// they are asked for, at the other moments of [`Moment`].
+/// requested, at the other moments of [`Moment`].
 ///
 /// Touch-downs and lift-offs are those that the method locates; a method that steps over them reports them at the end of its step.
 /// Maxima are located to rounding on the motion of the method, which is sampled four times a step.
@@ -174,14 +174,14 @@ impl<'a, S: Recorded<N>, const N: usize> Recorder<'a, S, N> {
         Self { system, start, rows, next: 0.0, visit, last: None, contact: None, held: None }
     }
 
-    fn show(&mut self, knot: &Knot<N>, moment: Moment, wall: Option<Side>) {
+    fn emit(&mut self, knot: &Knot<N>, moment: Moment, wall: Option<Side>) {
         (self.visit)(&Sample { wall, ..self.system.sample(knot, moment) });
     }
 
-    /// Shows a moment of a contact, if they are asked for.
+    /// Emits a moment of a contact, if events are requested.
     fn event(&mut self, knot: &Knot<N>, moment: Moment, wall: Side) {
         if self.rows.events {
-            self.show(knot, moment, Some(wall));
+            self.emit(knot, moment, Some(wall));
         }
     }
 
@@ -216,7 +216,7 @@ impl<'a, S: Recorded<N>, const N: usize> Recorder<'a, S, N> {
             .or_else(|| Side::BOTH.into_iter().find(|&side| deepest(side) > 1e-12).map(|side| (side, 0.0)));
         if let Some((side, before)) = contact {
             maxima(&|knot| self.system.depth(knot, side)[1], Moment::ForceMax, Some(side));
-            // Rounding makes no contact.
+            // An indentation by rounding is no contact.
             moments.retain(|(knot, moment, _)| {
                 *moment != Moment::ForceMax || self.system.depth(knot, side)[0] > 0.0
             });
@@ -247,7 +247,7 @@ impl<S: Recorded<N>, const N: usize> Observer<N> for Recorder<'_, S, N> {
             let t = self.start + self.next * self.rows.interval;
             let row = t.min(to.t);
             while let Some((knot, moment, wall)) = moments.next_if(|(knot, ..)| knot.t < row || t > to.t) {
-                self.show(&knot, moment, wall);
+                self.emit(&knot, moment, wall);
             }
             if t > to.t {
                 break;
@@ -259,7 +259,7 @@ impl<S: Recorded<N>, const N: usize> Observer<N> for Recorder<'_, S, N> {
             } else {
                 segment.at_time(t)
             };
-            self.show(&knot, Moment::Grid, None);
+            self.emit(&knot, Moment::Grid, None);
             self.next += 1.0;
         }
         self.last = Some(*to);

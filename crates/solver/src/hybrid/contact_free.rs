@@ -1,7 +1,7 @@
 //! Linear scenes in closed form: the bare structure, and a damper that provably never reaches a wall.
 //!
-//! The motion is a steady one and a transient, `y = y_s(t) + e^{A t} h`. Damping only takes energy from the transient, so its
-//! energy norm bounds its later motion: it decides whether a wall can ever be reached, and whether the record can still be broken.
+//! The motion is a steady one and a transient, `y = y_s(t) + e^{A t} h`. Damping only takes energy from the transient, so its energy norm
+//! bounds its later motion: the bound decides whether a wall can ever be reached, and whether the largest value can still be exceeded.
 
 use crate::budget::Budget;
 use crate::error::SolverError;
@@ -27,7 +27,7 @@ pub struct ContactFree<'a, S, const N: usize> {
     flow: Flow<N>,
     /// The flow in longer steps, where a part of the motion decays so fast that it can be left out.
     reduced: Option<Box<Reduced<N>>>,
-    /// The record, if the flow can go over its pieces.
+    /// The sampled force, if the flow can step over its pieces.
     samples: Option<Pieces<N>>,
     now: Knot<N>,
     /// The longest step without samples, s.
@@ -41,11 +41,17 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
     /// The scene at t = 0; no step will be longer than `longest` (s).
     pub fn new(system: &'a S, longest: f64, max_steps: u64) -> Self {
         let now = Knot { t: 0.0, excitation: system.excitation(0.0), y: system.start(), clock: [1.0, 0.0] };
-        Self::over(system.structure().sampled_force(), system, now, longest, max_steps)
+        Self::with_samples(system.structure().sampled_force(), system, now, longest, max_steps)
     }
 
-    /// The scene at a moment, over these samples.
-    fn over(force: Option<SampledForce>, system: &'a S, now: Knot<N>, whole: f64, max_steps: u64) -> Self {
+    /// The scene at a moment, with these samples of the force.
+    fn with_samples(
+        force: Option<SampledForce>,
+        system: &'a S,
+        now: Knot<N>,
+        whole: f64,
+        max_steps: u64,
+    ) -> Self {
         let longest = longest_step(force, whole);
         let flow = Flow::new(system.linear(), longest);
         let samples = Pieces::of(force, &flow);
@@ -53,7 +59,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
         Self { system, flow, reduced, samples, now, longest: whole, max_steps, work: Work::default() }
     }
 
-    /// The same in another state at another time, s.
+    /// The scene in another state at another time, s.
     #[must_use]
     pub fn from(self, t: f64, y: [f64; N]) -> Self {
         Self { now: Knot { t, excitation: self.system.excitation(t), y, clock: [1.0, 0.0] }, ..self }
@@ -73,23 +79,23 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
         to: f64,
         observer: &mut (impl Observer<N> + ?Sized),
     ) -> Result<(), SolverError> {
-        let budget = self.budget(to, observer.looks());
+        let budget = self.budget(to, observer.search_work());
         if self.system.structure().history().is_none() {
-            return self.go(to, observer, budget);
+            return self.step_to(to, observer, budget);
         }
         loop {
-            self.over_samples(to, observer, budget)?;
+            self.propagate_over_samples(to, observer, budget)?;
             let Some(stretch) = self.system.structure().stretch(self.now.t) else { return Ok(()) };
             if self.now.t >= to || observer.satisfied() {
                 return Ok(());
             }
             self.now.excitation = self.system.structure().excitation_in(&stretch, self.now.t);
             if self.samples.is_some() && self.now.t >= self.system.structure().paced_until() {
-                let free = Self::over(None, self.system, self.now, self.longest, self.max_steps);
+                let free = Self::with_samples(None, self.system, self.now, self.longest, self.max_steps);
                 *self = Self { work: self.work, ..free };
             }
-            observer.seam();
-            self.go(stretch.to.min(to), observer, budget)?;
+            observer.discontinuity();
+            self.step_to(stretch.to.min(to), observer, budget)?;
             if stretch.to >= to || observer.satisfied() {
                 return Ok(());
             }
@@ -98,7 +104,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
     }
 
     /// Steps from a sample of a record over whole pieces of it, at most to time `to`.
-    fn over_samples(
+    fn propagate_over_samples(
         &mut self,
         to: f64,
         observer: &mut (impl Observer<N> + ?Sized),
@@ -107,19 +113,19 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
         let Some(pieces) = &self.samples else { return Ok(()) };
         let Some(mut i) = pieces.at(self.now.t) else { return Ok(()) };
         let growth = LANES as f64 * self.flow.step() * self.system.energy_norm_growth();
-        // After pieces that were looked at one by one, so many are, before others are tried together.
-        let mut together = i;
+        // After a block that had to be observed piece by piece, the next one is tried at this sample.
+        let mut next_block = i;
         loop {
-            if i >= together {
+            if i >= next_block {
                 let growth = growth * (PIECES / LANES) as f64;
                 let energy = self.system.energy_norm(&self.now.y) + growth;
                 let block = Block::new(&self.flow, pieces, i, to, &self.now.y, energy);
-                together = i + PIECES;
+                next_block = i + PIECES;
                 if let Some(block) = block.filter(|block| observer.skips(block)) {
-                    i = together;
+                    i = next_block;
                     self.work.steps += PIECES as u64;
                     (self.now.t, self.now.y) = (block.end, block.last());
-                    budget.check(&self.work.and(observer.looks()), self.now.t)?;
+                    budget.check(&self.work.with_search_work(observer.search_work()), self.now.t)?;
                     if !self.now.y.iter().all(|v| v.is_finite()) {
                         return Err(SolverError::NonFinite { t: self.now.t });
                     }
@@ -128,12 +134,12 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
             }
             let Some(four) = pieces.four(&self.flow, i, to, &self.now.y) else { break };
             let energy = self.system.energy_norm(&self.now.y) + growth;
-            let steps = Steps::bent(&self.flow, self.now, four, energy);
+            let steps = Steps::from_pieces(&self.flow, self.now, four, energy);
             observer.steps(&steps);
             self.now = steps.knot(LANES);
             i += LANES;
             self.work.steps += LANES as u64;
-            budget.check(&self.work.and(observer.looks()), self.now.t)?;
+            budget.check(&self.work.with_search_work(observer.search_work()), self.now.t)?;
             if !self.now.y.iter().all(|v| v.is_finite()) {
                 return Err(SolverError::NonFinite { t: self.now.t });
             }
@@ -144,11 +150,16 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
         Ok(())
     }
 
-    fn budget(&self, to: f64, looks: u64) -> Budget {
-        Budget::new(self.flow.pace(), self.max_steps, self.work.and(looks), [self.now.t, to])
+    fn budget(&self, to: f64, search_work: u64) -> Budget {
+        Budget::new(
+            self.flow.pace(),
+            self.max_steps,
+            self.work.with_search_work(search_work),
+            [self.now.t, to],
+        )
     }
 
-    fn go(
+    fn step_to(
         &mut self,
         to: f64,
         observer: &mut (impl Observer<N> + ?Sized),
@@ -158,8 +169,8 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
         let whole = self.flow.step();
         let mut clock = StepClock::new(self.now.t, whole);
         while self.now.t < to && !observer.satisfied() {
-            if self.reduced.is_some() && self.settles() {
-                return self.go_reduced(to, observer, budget);
+            if self.reduced.is_some() && self.drop_fast_part() {
+                return self.step_reduced_to(to, observer, budget);
             }
             let (now, remaining) = (self.now, to - self.now.t);
             let energy =
@@ -178,7 +189,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
                 self.now = *step.ends()[1];
             }
             self.work.steps += steps.count().max(1) as u64;
-            budget.check(&self.work.and(observer.looks()), now.t)?;
+            budget.check(&self.work.with_search_work(observer.search_work()), now.t)?;
             if !self.now.y.iter().all(|v| v.is_finite()) {
                 return Err(SolverError::NonFinite { t: now.t });
             }
@@ -186,17 +197,17 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
         Ok(())
     }
 
-    /// Leaves out the fast part of the motion, if it has decayed.
+    /// Leaves out the fast part of the motion if it has decayed; returns whether it has.
     #[cold]
-    fn settles(&mut self) -> bool {
-        let y = self.reduced.as_deref().and_then(|reduced| reduced.settled(&self.now));
+    fn drop_fast_part(&mut self) -> bool {
+        let y = self.reduced.as_deref().and_then(|reduced| reduced.without_transient(&self.now));
         self.now.y = y.unwrap_or(self.now.y);
         y.is_some()
     }
 
-    /// The same in longer steps, from a moment at which the fast part of the motion has decayed.
+    /// [`Self::step_to`] in longer steps, from a moment at which the fast part of the motion has decayed.
     #[cold]
-    fn go_reduced(
+    fn step_reduced_to(
         &mut self,
         to: f64,
         observer: &mut (impl Observer<N> + ?Sized),
@@ -205,7 +216,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
         let Some(Reduced { flow, .. }) = self.reduced.as_deref() else { return Ok(()) };
         let growth = flow.step() * self.system.energy_norm_growth();
         let mut clock = StepClock::new(self.now.t, flow.step());
-        observer.seam();
+        observer.discontinuity();
         while self.now.t < to && !observer.satisfied() {
             let (now, length) = (self.now, flow.step().min(to - self.now.t));
             let motion = flow.expand(now.excitation, &now.y);
@@ -215,7 +226,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
             self.now = *step.ends()[1];
             clock.count(1);
             self.work.steps += 1;
-            budget.check(&self.work.and(observer.looks()), now.t)?;
+            budget.check(&self.work.with_search_work(observer.search_work()), now.t)?;
             if !self.now.y.iter().all(|v| v.is_finite()) {
                 return Err(SolverError::NonFinite { t: now.t });
             }
@@ -225,7 +236,7 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
 
     /// Advances to time `to` (s) unobserved: the transient by repeated squaring, the steady motion by its phase; step by step where
     /// there is no steady motion.
-    fn jump(&mut self, to: f64) -> Result<(), SolverError> {
+    fn advance_unobserved(&mut self, to: f64) -> Result<(), SolverError> {
         let whole = ((to - self.now.t) / self.flow.step()).floor();
         let Some(steady) = self.system.steady() else {
             return self.propagate(to, &mut Unobserved);
@@ -240,8 +251,8 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
         self.propagate(to, &mut Unobserved)
     }
 
-    /// Largest energy of the primary structure over the window; it ends early once `cutoff` is exceeded, or once steady motion
-    /// and what is left of the transient cannot reach the record any more: `√E1 <= √E1_steady + |transient| / √2`.
+    /// Largest energy of the primary structure over the window; it ends early once `cutoff` is exceeded, or once the steady motion with the
+    /// remaining transient can no longer reach the largest value so far: `√E1 <= √E1_steady + |transient| / √2`.
     ///
     /// # Errors
     /// As [`Self::propagate`].
@@ -254,25 +265,25 @@ impl<'a, S: LinearSystem<N>, const N: usize> ContactFree<'a, S, N> {
     where
         Q: Quantity<N>,
     {
-        /// Steps between looks at the bound.
+        /// Steps between checks of the bound.
         const STRIDE: f64 = 64.0;
         // The maximum is often that of the steady motion: with it known first, most of the search can be skipped.
         let (start, last) = (self.now, window.to - std::f64::consts::PI / self.flow.linear().frequency);
         if self.system.steady().is_some() && window.from < last {
-            self.jump(last)?;
+            self.advance_unobserved(last)?;
             self.propagate(window.to, &mut maximum)?;
             self.now = start;
         }
-        self.jump(window.from)?;
+        self.advance_unobserved(window.from)?;
         let budget = self.budget(window.to, 0);
         while self.now.t < window.to && !Observer::<N>::satisfied(&maximum) {
             let step = self.reduced.as_deref().map_or(self.flow.step(), |reduced| reduced.flow.step());
             let to = window.to.min(self.now.t + STRIDE * step);
             if to <= self.now.t {
-                // Late in a run a step may be less than the spacing of the numbers there.
+                // Late in a run a step may be shorter than the spacing of floating-point numbers there.
                 return Err(self.flow.too_fast(self.now.t));
             }
-            self.go(to, &mut maximum, budget)?;
+            self.step_to(to, &mut maximum, budget)?;
             let transient = transient(self.system, self.now.t, &self.now.y);
             let bound = (steady_e1.sqrt() + transient * std::f64::consts::FRAC_1_SQRT_2).powi(2);
             if bound <= maximum.record().value {
@@ -319,7 +330,7 @@ mod tests {
     use super::*;
     use retune_model::{Bare, Forcing, NonNegative, Positive, Primary};
 
-    /// Holds every state that is handed over against the energy that is handed over with it.
+    /// Compares every state with the energy bound that is passed on with it.
     struct Energies<'a> {
         system: &'a Bare,
         steps: usize,

@@ -3,7 +3,7 @@
 use super::propagator::{Hybrid, Phase, ReducedFlight, relative_position};
 use crate::error::SolverError;
 use crate::linear::flow::Expansion;
-use crate::linear::gap::{CUBIC, Lost, ceiling, cubic, first_contact, floor, opening_floor};
+use crate::linear::gap::{CUBIC, PrecisionLost, ceiling, cubic, first_contact, floor, opening_floor};
 use crate::linear::steps::{Step, StepClock, Steps};
 use crate::motion::knot::Knot;
 use crate::motion::lanes::{LANES, shifted};
@@ -17,7 +17,7 @@ use wide::f64x4;
 pub enum FlightEnd {
     /// The damper has touched a wall.
     TouchDown(Side, Knot<4>),
-    /// The run ends here.
+    /// The run ended, or the observer was satisfied.
     Stopped(Knot<4>),
 }
 
@@ -45,39 +45,39 @@ impl Hybrid<'_> {
                 return Err(SolverError::NonFinite { t: now.t });
             }
             if self.reduced.is_some()
-                && let Some(settled) = self.settled(&now, leaving)
+                && let Some(settled) = self.without_fast_part(&now, leaving)
             {
                 return self.reduced_flight(settled, to, observer);
             }
             let growth = LANES as f64 * whole * self.system.energy_norm_growth();
             let mut steps = Steps::new(&self.flow, now, clock, energy + growth);
             let (open, near) = self.open_steps(&steps, leaving);
-            let seen = open.min((remaining / whole) as usize);
-            let careful = seen < LANES;
-            steps.keep(seen);
-            self.work.steps += seen as u64 + u64::from(careful);
-            self.budget.check(&self.work.and(observer.looks()), now.t)?;
-            if seen > 0 {
+            let whole_steps = open.min((remaining / whole) as usize);
+            let needs_search = whole_steps < LANES;
+            steps.keep(whole_steps);
+            self.work.steps += whole_steps as u64 + u64::from(needs_search);
+            self.budget.check(&self.work.with_search_work(observer.search_work()), now.t)?;
+            if whole_steps > 0 {
                 observer.steps(&steps);
-                now = steps.knot(seen);
-                clock.count(seen);
+                now = steps.knot(whole_steps);
+                clock.count(whole_steps);
                 leaving = None;
                 if observer.satisfied() {
                     return Ok(FlightEnd::Stopped(now));
                 }
             }
-            if careful {
+            if needs_search {
                 let remaining = to - now.t;
                 if remaining <= 0.0 {
                     return Ok(FlightEnd::Stopped(now));
                 }
-                let walls = Side::BOTH.into_iter().filter(|&side| seen == open && near[side as usize]);
+                let walls = Side::BOTH.into_iter().filter(|&side| whole_steps == open && near[side as usize]);
                 let motion = self.flow.expand(now.excitation, &now.y);
                 let longest = whole.min(remaining);
                 let (length, touched) = self.first_touch(&now, &motion, walls, leaving, longest)?;
                 let energy = steps.energy();
                 let mut step = if length == whole {
-                    Step::between(&self.flow, [now, steps.knot(seen + 1)], whole, energy)
+                    Step::between(&self.flow, [now, steps.knot(whole_steps + 1)], whole, energy)
                 } else {
                     Step::part(&self.flow, now, &motion, length, energy)
                 };
@@ -102,14 +102,14 @@ impl Hybrid<'_> {
         }
     }
 
-    /// The same moment without the fast part of the motion, if that has decayed.
+    /// The moment without the fast part of the motion, if that has decayed.
     #[cold]
-    fn settled(&self, now: &Knot<4>, leaving: Option<Side>) -> Option<Knot<4>> {
+    fn without_fast_part(&self, now: &Knot<4>, leaving: Option<Side>) -> Option<Knot<4>> {
         let reduced = self.reduced.as_deref().filter(|_| leaving.is_none())?;
-        reduced.flow.settled(now).map(|y| Knot { y, ..*now })
+        reduced.flow.without_transient(now).map(|y| Knot { y, ..*now })
     }
 
-    /// Flies on in longer steps from a moment at which the fast part of the motion has decayed.
+    /// Continues the flight in longer steps from a moment at which the fast part of the motion has decayed.
     #[cold]
     #[inline(never)]
     fn reduced_flight(
@@ -134,7 +134,7 @@ impl Hybrid<'_> {
         let (flow, whole) = (&reduced.flow.flow, reduced.flow.flow.step());
         let growth = LANES as f64 * whole * self.system.energy_norm_growth();
         let mut clock = StepClock::new(now.t, whole);
-        observer.seam();
+        observer.discontinuity();
         loop {
             let energy = self.system.energy_norm(&now.y) + growth;
             if !energy.is_finite() {
@@ -148,7 +148,7 @@ impl Hybrid<'_> {
                     return Ok(FlightEnd::Stopped(now));
                 }
                 self.work.steps += 1;
-                self.budget.check(&self.work.and(observer.looks()), now.t)?;
+                self.budget.check(&self.work.with_search_work(observer.search_work()), now.t)?;
                 let mut step = steps.step(number);
                 let mut touched = None;
                 if number >= open || remaining < whole {
@@ -189,7 +189,7 @@ impl Hybrid<'_> {
         self.open(steps, self.fourth, leaving)
     }
 
-    /// The same with bounds on the fourth derivative of the relative displacement, see [`Hybrid::fourth`].
+    /// [`Self::open_steps`] with these bounds on the fourth derivative of the relative displacement, see [`Hybrid::fourth`].
     #[inline(always)]
     fn open(&self, steps: &Steps<'_, 4>, fourth: [f64; 2], leaving: Option<Side>) -> (usize, [bool; 2]) {
         let (from, to, lengths) = (steps.from(), steps.ends(), steps.lengths());
@@ -216,7 +216,7 @@ impl Hybrid<'_> {
         (count as usize, open.map(|lanes| lanes >> count & 1 == 0))
     }
 
-    /// How long a step of at most `longest` seconds from `now` is that may touch one of `walls`: up to that point, s; and the wall.
+    /// The length (s) of a step of at most `longest` seconds from `now` up to the first touch of one of `walls`, and that wall.
     fn first_touch(
         &self,
         now: &Knot<4>,
@@ -228,14 +228,14 @@ impl Hybrid<'_> {
         let mut first = (longest, None);
         for side in walls {
             let found = first_contact(self.gap_polynomial(motion, side, leaving), first.0);
-            if let Some(s) = found.map_err(|Lost| SolverError::NonFinite { t: now.t })? {
+            if let Some(s) = found.map_err(|PrecisionLost| SolverError::NonFinite { t: now.t })? {
                 first = (s, Some(side));
             }
         }
         Ok(first)
     }
 
-    /// The gap to a wall over the next step as a polynomial. A damper on the wall, by definition or to rounding, has none.
+    /// The gap to a wall over the next step as a polynomial. For a damper on the wall, by definition or to rounding, it begins at zero.
     fn gap_polynomial(&self, motion: &Expansion<4>, side: Side, leaving: Option<Side>) -> Polynomial<BLOCKS> {
         let gap = relative_position(motion, -side.sign());
         let now = gap.coefficient(0) + side.sign() * self.system.wall(side);
@@ -243,7 +243,7 @@ impl Hybrid<'_> {
             return gap.with_constant(now.max(0.0));
         }
         let mut gap = gap.with_constant(0.0);
-        // A rigid wall lets go of the damper where the force between them is zero: the gap opens from rest, at first without acceleration.
+        // A rigid wall releases the damper where the force between them is zero: the gap opens from rest, at first without acceleration.
         if gap.coefficient(1) == 0.0 && self.system.is_rigid() {
             let terms = gap.0[0].as_mut_array();
             terms[2] = terms[2].max(0.0);

@@ -1,36 +1,36 @@
-//! Rigid walls as data: what is prepared for a system, and a step of the motion in which a wall holds the damper.
+//! The data of rigid walls: what is prepared for a system, and a step of the motion in which a wall holds the damper.
 
 use crate::linear::flow::{Expansion, Flow};
 use crate::linear::steps::Step;
 use crate::motion::form::Form;
 use crate::motion::knot::Knot;
 use crate::motion::segment::Segment;
-use crate::system::held;
+use crate::system::held_linear;
 use retune_model::Coupled;
 
 /// Rigid walls, prepared for a system.
 pub(super) struct RigidWalls {
     pub restitution: f64,
-    /// Both bodies as one.
+    /// The flow of both bodies as one.
     pub held: Flow<4>,
 }
 
 impl RigidWalls {
-    /// Those of a system, in steps of at most `longest` seconds; none if it has no rigid walls.
+    /// The rigid walls of a system, in steps of at most `longest` seconds; `None` if it has none.
     pub(super) fn of(system: &Coupled, longest: f64) -> Option<Box<Self>> {
         let restitution = system.restitution()?;
-        Some(Box::new(Self { restitution, held: Flow::new(held(system), longest) }))
+        Some(Box::new(Self { restitution, held: Flow::new(held_linear(system), longest) }))
     }
 }
 
 /// A step of the motion in which a wall holds the damper.
-pub(super) struct Held<'a> {
+pub(super) struct HeldStep<'a> {
     step: Step<'a, 4>,
     wall: f64,
 }
 
-impl<'a> Held<'a> {
-    /// From a moment on for so many seconds, the last of them at a time (s) that is known better than by their sum, if one is given.
+impl<'a> HeldStep<'a> {
+    /// The step from a moment over `length` seconds; `last` is its end time (s) where that is known better than by their sum.
     pub(super) fn new(
         flow: &'a Flow<4>,
         from: Knot<4>,
@@ -38,7 +38,7 @@ impl<'a> Held<'a> {
         (length, last): (f64, Option<f64>),
         wall: f64,
     ) -> Self {
-        // Its bounds are those of its Taylor polynomial: those by the energy are of flight.
+        // Only the bounds by its Taylor polynomial hold: those by the energy are for flight.
         let mut step = Step::part(flow, from, motion, length, f64::INFINITY);
         let end = on_wall(*step.ends()[1], wall);
         *step.end() = Knot { t: last.unwrap_or(end.t), ..end };
@@ -52,7 +52,7 @@ fn on_wall(knot: Knot<4>, wall: f64) -> Knot<4> {
     Knot { y: [x, v, x + wall, v], ..knot }
 }
 
-impl Segment<4> for Held<'_> {
+impl Segment<4> for HeldStep<'_> {
     fn ends(&self) -> [&Knot<4>; 2] {
         self.step.ends()
     }

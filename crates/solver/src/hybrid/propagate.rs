@@ -22,52 +22,57 @@ impl Hybrid<'_> {
         self.propagate_for(from, to, observer, None)
     }
 
-    /// The same, compiled for this observer, with another that is called through a table: each that it is compiled for makes builds longer.
+    /// [`Self::propagate`] compiled for this observer, with an optional second one that is called by dynamic dispatch: compiling for every
+    /// observer would make builds longer.
     #[inline(never)]
     pub(crate) fn propagate_for(
         &mut self,
         from: Motion,
         to: f64,
         observer: &mut (impl Observer<4> + ?Sized),
-        beside: Option<&mut dyn Observer<4>>,
+        second: Option<&mut dyn Observer<4>>,
     ) -> Result<Motion, SolverError> {
-        let observer = &mut (observer, beside);
+        let observer = &mut (observer, second);
         self.flow.check_step(from.t, to)?;
-        self.budget =
-            Budget::new(self.flow.pace(), self.max_steps, self.work.and(observer.looks()), [from.t, to]);
+        self.budget = Budget::new(
+            self.flow.pace(),
+            self.max_steps,
+            self.work.with_search_work(observer.search_work()),
+            [from.t, to],
+        );
         self.end = to;
         if self.system.bare().history().is_none() {
-            return self.within(from, to, observer);
+            return self.propagate_smooth(from, to, observer);
         }
         let mut now = from;
         loop {
-            now = self.over_samples(now, to, observer)?;
+            now = self.fly_over_samples(now, to, observer)?;
             self.stretch = self.system.bare().stretch(now.t);
             self.leave_samples(now.t);
             let end = self.stretch.map_or(to, |stretch| stretch.to.min(to));
             if now.t >= to || observer.satisfied() {
                 return Ok(now);
             }
-            observer.seam();
-            now = self.within(now, end, observer)?;
+            observer.discontinuity();
+            now = self.propagate_smooth(now, end, observer)?;
             if end >= to || observer.satisfied() {
                 return Ok(now);
             }
-            // A contact may have led beyond it.
+            // A contact may have ended later.
             now.t = now.t.max(end);
         }
     }
 
-    /// The same while the force neither jumps nor bends. A contact that ends after `to` stops it there, at lift-off.
+    /// [`Self::propagate`] while the force neither jumps nor bends. A contact that ends after `to` stops it there, at lift-off.
     #[inline(always)]
-    fn within(
+    fn propagate_smooth(
         &mut self,
         from: Motion,
         to: f64,
         observer: &mut (impl Observer<4> + ?Sized),
     ) -> Result<Motion, SolverError> {
         if let Some(rigid) = self.rigid.take() {
-            let end = self.between_rigid(&rigid, from, to, observer);
+            let end = self.propagate_rigid(&rigid, from, to, observer);
             self.rigid = Some(rigid);
             return end;
         }

@@ -21,7 +21,7 @@ pub enum Phase {
     Flight,
     /// Between the walls, having just left one, where the gap is zero by definition rather than by arithmetic.
     Leaving(Side),
-    /// In contact with a wall; of a rigid one, held by it.
+    /// In contact with a wall; with a rigid wall, held by it.
     InContact(Side),
 }
 
@@ -68,20 +68,20 @@ pub struct Hybrid<'a> {
     pub(super) rigid: Option<Box<RigidWalls>>,
     /// `|d⁴r/dt⁴| <= fourth[0] e + fourth[1]` at energy norm `e` (√J), m/s⁴; see [`derivative_bounds`].
     pub(super) fourth: [f64; 2],
-    /// The same of the second derivative, m/s².
+    /// The same bound on the second derivative, m/s².
     pub(super) second: [f64; 2],
     pub(super) rtol: f64,
     /// The longest step of a flight without samples, s.
     longest: f64,
     pub(super) max_steps: u64,
-    /// The record, if the flow can go over its pieces.
+    /// The sampled force, if the flow can step over its pieces.
     pub(super) samples: Option<Pieces<4>>,
-    /// The stretch of time that the motion is in, of a force that has several.
+    /// The present stretch of time, for a force that has several.
     pub(super) stretch: Option<Stretch>,
-    /// The end of what is being followed, s.
+    /// The end of the present call of [`Self::propagate`], s.
     pub(super) end: f64,
     pub(super) budget: Budget,
-    /// Of the piece of a contact that is observed.
+    /// What observers of a piece of a contact share.
     pub(super) shared: Shared,
     /// Work done so far.
     pub work: Work,
@@ -108,11 +108,17 @@ impl<'a> Hybrid<'a> {
     /// Prepares the propagator. `rtol` is the relative error allowed in a step of a contact, `longest` (s) the longest
     /// flight step, `max_steps` the most steps a run may take.
     pub fn new(system: &'a Coupled, rtol: f64, longest: f64, max_steps: u64) -> Self {
-        Self::over(system.bare().sampled_force(), system, rtol, longest, max_steps)
+        Self::with_samples(system.bare().sampled_force(), system, rtol, longest, max_steps)
     }
 
-    /// The same over these samples.
-    fn over(force: Option<SampledForce>, system: &'a Coupled, rtol: f64, whole: f64, max_steps: u64) -> Self {
+    /// [`Self::new`] with these samples of the force.
+    fn with_samples(
+        force: Option<SampledForce>,
+        system: &'a Coupled,
+        rtol: f64,
+        whole: f64,
+        max_steps: u64,
+    ) -> Self {
         let longest = longest_step(force, whole);
         let flow = Flow::new(system.linear(), longest);
         let bounds = derivative_bounds::<_, 4, 5>(system, STROKE);
@@ -137,17 +143,17 @@ impl<'a> Hybrid<'a> {
         }
     }
 
-    /// The same without the longer steps of a flight whose fast part has decayed.
+    /// The propagator without the longer steps of a flight whose fast part has decayed.
     #[must_use]
     pub fn in_short_steps(self) -> Self {
         Self { reduced: None, ..self }
     }
 
-    /// Goes on in steps of the motion where samples set them [no longer](retune_model::Course::paced_until).
+    /// Continues in steps set by the motion where samples set them [no longer](retune_model::Course::paced_until).
     #[cold]
     pub(super) fn leave_samples(&mut self, t: f64) {
         if self.samples.is_some() && t >= self.system.bare().paced_until() {
-            let free = Self::over(None, self.system, self.rtol, self.longest, self.max_steps);
+            let free = Self::with_samples(None, self.system, self.rtol, self.longest, self.max_steps);
             *self =
                 Self { stretch: self.stretch, end: self.end, work: self.work, budget: self.budget, ..free };
         }

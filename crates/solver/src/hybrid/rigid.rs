@@ -1,14 +1,14 @@
 //! Rigid walls: an impact is a jump of the state, and a damper that a wall holds moves with the structure as one body.
 //!
-//! Flight is the same as between Hertz contacts. A bounce that does not part the bodies faster than rounding lets them be parted is the end
-//! of a chatter, or of none: the wall then holds the damper if it is pressed on it (`docs/theory.md`, "Rigid walls").
+//! Flight is the same as between Hertz contacts. A rebound too slow to be told from rounding ends a chatter, if there was one: the wall
+//! then holds the damper if it is pressed on it (`docs/theory.md`, "Rigid walls").
 
 use super::flight::FlightEnd;
-use super::held::{Held, RigidWalls};
+use super::held::{HeldStep, RigidWalls};
 use super::propagator::{Hybrid, Motion, Phase};
 use crate::error::SolverError;
 use crate::linear::flow::Expansion;
-use crate::linear::gap::{Lost, first_contact};
+use crate::linear::gap::{PrecisionLost, first_contact};
 use crate::linear::steps::StepClock;
 use crate::motion::knot::Knot;
 use crate::motion::polynomial::{BLOCKS, Polynomial};
@@ -16,21 +16,21 @@ use crate::motion::segment::Segment;
 use crate::observe::observer::{Impact, Observer};
 use retune_model::Side;
 
-/// Units in the last place of the speeds by which a rebound must part the bodies. A slower one is none: it is less than the rounding errors
-/// of a flight.
-const PARTED: f64 = 64.0;
+/// Least speed of a rebound, in units in the last place of the speeds. A slower one is within the rounding errors of a flight and does not
+/// count.
+const REBOUND_ULPS: f64 = 64.0;
 
-/// How a stretch on a wall ended.
+/// How a hold on a wall ended.
 enum HoldEnd {
     /// The force between wall and damper has come to zero.
     Released(Knot<4>),
-    /// The run ends here.
+    /// The run ended, or the observer was satisfied.
     Stopped(Knot<4>),
 }
 
 impl Hybrid<'_> {
     /// [`Self::propagate`] between rigid walls.
-    pub(super) fn between_rigid(
+    pub(super) fn propagate_rigid(
         &mut self,
         walls: &RigidWalls,
         from: Motion,
@@ -53,7 +53,7 @@ impl Hybrid<'_> {
                 FlightEnd::TouchDown(side, touch) => {
                     (now, phase) = self.strike(walls, side, touch, from.t, observer);
                     self.work.steps += 1;
-                    self.budget.check(&self.work.and(observer.looks()), now.t)?;
+                    self.budget.check(&self.work.with_search_work(observer.search_work()), now.t)?;
                 }
             }
             if observer.satisfied() || now.t >= to {
@@ -62,7 +62,7 @@ impl Hybrid<'_> {
         }
     }
 
-    /// A touch-down on a wall: the moment after it, and what follows.
+    /// A touch-down on a wall: the moment after the impact, and the next phase.
     fn strike(
         &self,
         walls: &RigidWalls,
@@ -77,12 +77,12 @@ impl Hybrid<'_> {
         if touch.t > begun || closing > 0.0 {
             observer.touch_down(touch.t, side);
         }
-        // What holds it is the force after the impact: before it the structure may be faster or slower.
+        // The force after the impact decides whether it is held: before the impact the structure may be faster or slower.
         let at_rest = self.system.caught(side, &touch.y);
         let force =
             self.system.holding_force(side, self.system.held_acceleration(touch.excitation, &at_rest));
         let pressing = force * self.system.inverse_effective_mass();
-        let rounding = PARTED * f64::EPSILON * (v1.abs() + v2.abs() + pressing.abs() * touch.t);
+        let rounding = REBOUND_ULPS * f64::EPSILON * (v1.abs() + v2.abs() + pressing.abs() * touch.t);
         let slow = walls.restitution * closing <= rounding;
         let caught = slow && force >= 0.0;
         let y = match caught {
@@ -91,10 +91,10 @@ impl Hybrid<'_> {
             false => touch.y,
         };
         let after = Knot { y, ..touch };
-        // By how much a motion without a wall would pass it: less than the rounding of the places is a graze.
+        // The depth to which the damper would go without the wall: below the rounding of positions it is a graze.
         let depth = 0.5 * closing * closing / -pressing;
         let places = touch.y[0].abs() + touch.y[2].abs() + self.system.rest_distance();
-        let grazes = !caught && force < 0.0 && depth <= PARTED * f64::EPSILON * places;
+        let grazes = !caught && force < 0.0 && depth <= REBOUND_ULPS * f64::EPSILON * places;
         observer.impact(&Impact { side, before: touch, after, caught, grazes });
         (after, if caught { Phase::InContact(side) } else { Phase::Leaving(side) })
     }
@@ -122,19 +122,20 @@ impl Hybrid<'_> {
             let inertia = self.held_inertia(&motion, weight);
             let force = inertia.with_constant(inertia.coefficient(0) + constant);
             let longest = held.step().min(remaining);
-            let end = first_contact(force, longest).map_err(|Lost| SolverError::NonFinite { t: now.t })?;
+            let end =
+                first_contact(force, longest).map_err(|PrecisionLost| SolverError::NonFinite { t: now.t })?;
             let last = match end {
                 Some(_) => None,
                 None if longest < held.step() => Some(to),
                 None => Some(clock.after(1)),
             };
-            let step = Held::new(held, now, &motion, (end.unwrap_or(longest), last), wall);
+            let step = HeldStep::new(held, now, &motion, (end.unwrap_or(longest), last), wall);
             if step.length() > 0.0 {
                 observer.segment(&step);
             }
             now = *step.ends()[1];
             self.work.steps += 1;
-            self.budget.check(&self.work.and(observer.looks()), now.t)?;
+            self.budget.check(&self.work.with_search_work(observer.search_work()), now.t)?;
             if end.is_some() {
                 return Ok(HoldEnd::Released(now));
             }
@@ -145,8 +146,8 @@ impl Hybrid<'_> {
         }
     }
 
-    /// `weight` times the acceleration of both bodies, that of the base included: where the base is accelerated, what springs and dashpots of the
-    /// structure give them.
+    /// `weight` times the acceleration of both bodies, that of the base included: on an accelerated base, the part due to the spring and
+    /// the dashpot of the structure.
     fn held_inertia(&self, motion: &Expansion<4>, weight: f64) -> Polynomial<BLOCKS> {
         let [x, v, ..] = motion.0;
         if !self.system.bare().moves_with_base() {

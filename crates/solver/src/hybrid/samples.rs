@@ -11,18 +11,18 @@ use crate::observe::observer::Observer;
 use retune_model::Side;
 use wide::f64x4;
 
-/// By how much of the largest force two pieces of a record may differ where they meet, as rounding leaves it. More is a jump.
+/// Share of the largest force by which two pieces of a record may differ where they meet, by rounding. More is a jump.
 const JUMP: f64 = 1e-12;
 
 impl Hybrid<'_> {
-    /// Where the force bends in a contact that begins at `touch`, and up to when it neither jumps nor bends anywhere else, s.
+    /// The bends of the force in a contact that begins at `touch`, and the time (s) until which it neither jumps nor bends anywhere else.
     pub(super) fn bends(&self, side: Side, touch: &Knot<4>) -> (Bends, f64) {
         let (bare, mut bends) = (self.system.bare(), Bends::NONE);
         let Some(mut stretch) = self.stretch else { return (bends, self.end) };
         let returns = bare.turning()[1];
         let latest = self.collisions[side as usize].latest_end(touch);
         let jump = JUMP * bare.force_bounds()[0];
-        // Of a contact that is none, the end is NaN.
+        // The end is NaN for a touch-down that begins no contact.
         while returns == 0.0 && stretch.to < self.end && stretch.to < latest {
             let Some(next) = bare.stretch(stretch.to) else { break };
             let before = bare.excitation_in(&stretch, stretch.to);
@@ -38,20 +38,20 @@ impl Hybrid<'_> {
 
     /// Flies from a sample over whole pieces of the record, as far as no wall is near, at most to time `to`.
     #[inline(always)]
-    pub(super) fn over_samples(
+    pub(super) fn fly_over_samples(
         &mut self,
         from: Motion,
         to: f64,
         observer: &mut (impl Observer<4> + ?Sized),
     ) -> Result<Motion, SolverError> {
         let Some(pieces) = self.samples.take_if(|_| from.phase == Phase::Flight) else { return Ok(from) };
-        let end = self.over_pieces(&pieces, from, to, observer);
+        let end = self.fly_over_pieces(&pieces, from, to, observer);
         self.samples = Some(pieces);
         end
     }
 
     #[inline(always)]
-    fn over_pieces(
+    fn fly_over_pieces(
         &mut self,
         pieces: &Pieces<4>,
         from: Motion,
@@ -61,31 +61,31 @@ impl Hybrid<'_> {
         let Some(mut i) = pieces.at(from.t) else { return Ok(from) };
         let mut now = Knot { t: from.t, excitation: [0.0; 2], y: from.y, clock: [1.0, 0.0] };
         let growth = LANES as f64 * self.flow.step() * self.system.energy_norm_growth();
-        // After pieces that were looked at one by one, so many are, before others are tried together.
-        let mut together = i;
+        // After a block that had to be observed piece by piece, the next one is tried at this sample.
+        let mut next_block = i;
         loop {
-            if i >= together {
-                if let Some((end, y)) = self.pass(pieces, i, &now.y, to, observer) {
-                    (now.t, now.y, i, together) = (end, y, i + PIECES, i + PIECES);
+            if i >= next_block {
+                if let Some((end, y)) = self.skip_block(pieces, i, &now.y, to, observer) {
+                    (now.t, now.y, i, next_block) = (end, y, i + PIECES, i + PIECES);
                     self.work.steps += PIECES as u64;
-                    self.budget.check(&self.work.and(observer.looks()), now.t)?;
+                    self.budget.check(&self.work.with_search_work(observer.search_work()), now.t)?;
                     continue;
                 }
-                together = i + PIECES;
+                next_block = i + PIECES;
             }
             let Some(four) = pieces.four(&self.flow, i, to, &now.y) else { break };
             let energy = self.system.energy_norm(&now.y);
             if !energy.is_finite() {
                 return Err(SolverError::NonFinite { t: now.t });
             }
-            let mut steps = Steps::bent(&self.flow, now, four, energy + growth);
+            let mut steps = Steps::from_pieces(&self.flow, now, four, energy + growth);
             let (open, _) = self.open_steps(&steps, None);
             if open == 0 {
                 break;
             }
             steps.keep(open);
             self.work.steps += open as u64;
-            self.budget.check(&self.work.and(observer.looks()), now.t)?;
+            self.budget.check(&self.work.with_search_work(observer.search_work()), now.t)?;
             observer.steps(&steps);
             now = steps.knot(open);
             i += open;
@@ -96,9 +96,10 @@ impl Hybrid<'_> {
         Ok(Motion { t: now.t, y: now.y, phase: Phase::Flight })
     }
 
-    /// The end of many pieces from sample `i` on, and the state there, if provably no wall is near in them, nor anything to observe.
+    /// The end of the block of pieces from sample `i`, and the state there, if provably no wall is near in it and there is nothing to
+    /// observe.
     #[inline(always)]
-    fn pass(
+    fn skip_block(
         &self,
         pieces: &Pieces<4>,
         i: usize,

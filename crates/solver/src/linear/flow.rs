@@ -26,12 +26,12 @@ pub struct Stride<const N: usize> {
     pub y: [f64x4; N],
 }
 
-/// Four pieces of a record in a row.
+/// Four consecutive pieces of a record.
 pub struct FourPieces<const N: usize> {
-    /// How long they take, and when they end, s.
+    /// Their durations and end times, s.
     pub lengths: f64x4,
     pub times: f64x4,
-    /// The force with which each begins, and its partner.
+    /// The force at the beginning of each, and its partner.
     pub begin: [f64x4; 2],
     /// The moments at which they end.
     pub ends: Stride<N>,
@@ -41,18 +41,19 @@ pub struct FourPieces<const N: usize> {
 pub struct Flow<const N: usize> {
     linear: Linear<N>,
     step: f64,
-    /// 1 of a force that turns, 0 of one that is linear in time.
+    /// 1 for a harmonic force, 0 for one that is linear in time.
     back: f64,
     /// Columns of `Φ` and of its powers: `phi[j][i]` is the effect of component `j` on component `i` after each of the steps.
     phi: [[f64x4; N]; N],
-    /// The same for the two components of the force.
+    /// The effects of the two components of the force, as `phi`.
     psi: [[f64x4; N]; 2],
-    /// Cosine and sine of the angles by which the force has turned, and the sine by which it returns: 0 where it is linear in time.
+    /// Cosine and sine of the angles by which the force has rotated, and the sine with which it enters its partner: 0 where it is linear in
+    /// time.
     turn: [f64x4; 3],
-    /// Series of the cosine and the sine of the angle by which the force turns.
+    /// Series of the cosine and the sine of the angle by which the force rotates.
     rotation: [Polynomial<BLOCKS>; 2],
-    /// What the force at the start and at the end of each of the steps does to the states, where it is linear in each of them: zero before.
-    bends: [[f64x4; N]; LANES + 1],
+    /// Responses of the states to the force at each boundary of the steps, where it is linear within each step: zero in earlier steps.
+    sample_responses: [[f64x4; N]; LANES + 1],
     /// The series of which `Φ` and `Ψ` are the values at the end of the step.
     free: [Expansion<N>; N],
     forced: [Expansion<N>; 2],
@@ -81,7 +82,7 @@ impl<const N: usize> Flow<N> {
         let mut flow = Self {
             phi: [[f64x4::ZERO; N]; N],
             psi: [[f64x4::ZERO; N]; 2],
-            bends: [[f64x4::ZERO; N]; LANES + 1],
+            sample_responses: [[f64x4::ZERO; N]; LANES + 1],
             turn: [f64x4::ZERO; 3],
             linear,
             step,
@@ -102,7 +103,7 @@ impl<const N: usize> Flow<N> {
                         next[i] += column[i] * weight;
                     }
                 }
-                (*excitation, *y) = (turned(*excitation, turn, back), next);
+                (*excitation, *y) = (rotated(*excitation, turn, back), next);
             }
             for i in 0..N {
                 for j in 0..N {
@@ -120,28 +121,28 @@ impl<const N: usize> Flow<N> {
             }
         }
         if back == 0.0 {
-            flow.bends = flow.bent();
+            flow.sample_responses = flow.responses_to_samples();
         }
         flow
     }
 
-    /// A straight line from `f` to `g` is `f` with the partner `-(g - f) / (ω h)`; what it does in its own step goes on by `Φ`.
-    fn bent(&self) -> [[f64x4; N]; LANES + 1] {
+    /// A straight line from `f` to `g` is `f` with the partner `-(g - f) / (ω h)`; its effect within the step is carried on by `Φ`.
+    fn responses_to_samples(&self) -> [[f64x4; N]; LANES + 1] {
         let lane = |column: &[f64x4; N], lane: usize| column.map(|lanes| lanes.to_array()[lane]);
         let [value, partner] = self.psi.each_ref().map(|column| lane(column, 0));
         let slope = 1.0 / (self.linear.frequency * self.step);
-        let own: [[f64; N]; 2] =
+        let single_step: [[f64; N]; 2] =
             [std::array::from_fn(|i| value[i] + partner[i] * slope), partner.map(|of| -of * slope)];
-        let mut bends = [[f64x4::ZERO; N]; LANES + 1];
+        let mut sample_responses = [[f64x4::ZERO; N]; LANES + 1];
         for step in 0..LANES {
-            for (end, own) in own.iter().enumerate() {
+            for (end, response) in single_step.iter().enumerate() {
                 for after in step..LANES {
-                    // So many whole steps after this one.
-                    let moved = match (after - step).checked_sub(1) {
-                        None => *own,
+                    // Carried on by the whole steps after this one.
+                    let carried = match (after - step).checked_sub(1) {
+                        None => *response,
                         Some(steps) => {
                             let mut sum = [0.0; N];
-                            for (column, weight) in self.phi.iter().zip(own) {
+                            for (column, weight) in self.phi.iter().zip(response) {
                                 let column = lane(column, steps);
                                 for i in 0..N {
                                     sum[i] += column[i] * weight;
@@ -151,15 +152,15 @@ impl<const N: usize> Flow<N> {
                         }
                     };
                     for i in 0..N {
-                        bends[step + end][i].as_mut_array()[after] += moved[i];
+                        sample_responses[step + end][i].as_mut_array()[after] += carried[i];
                     }
                 }
             }
         }
-        bends
+        sample_responses
     }
 
-    /// Adds what a state becomes after the next whole steps without force.
+    /// Adds the deviation of a state after the next whole steps without force.
     #[inline(always)]
     fn add_free(&self, next: &mut [f64x4; N], y: &[f64; N]) {
         for (j, column) in self.phi.iter().enumerate() {
@@ -170,12 +171,12 @@ impl<const N: usize> Flow<N> {
         }
     }
 
-    /// The moments after the next whole steps, each of them under a straight line from one of these forces to the next, and the force and its
-    /// partner with which each begins.
+    /// The moments after the next whole steps, in each of which the force is linear from one of these values to the next, and the force and
+    /// its partner at the beginning of each.
     #[inline(always)]
-    pub fn bent_stride(&self, forces: &[f64; LANES + 1], y: &[f64; N]) -> ([f64x4; 2], Stride<N>) {
+    pub fn sampled_stride(&self, forces: &[f64; LANES + 1], y: &[f64; N]) -> ([f64x4; 2], Stride<N>) {
         let mut next = self.linear.origin.map(f64x4::splat);
-        for (column, &force) in self.bends.iter().zip(forces) {
+        for (column, &force) in self.sample_responses.iter().zip(forces) {
             for i in 0..N {
                 next[i] += column[i] * force;
             }
@@ -205,7 +206,7 @@ impl<const N: usize> Flow<N> {
         SolverError::TooFast { t, h: self.step, remedy: self.pace().remedy(t, self.step) }
     }
 
-    /// How the motion changes at a moment, by its own equations.
+    /// The derivatives of the motion at a moment, by the equations of this flow.
     #[cold]
     pub fn jet(&self, excitation: Excitation, y: &[f64; N]) -> Jet<N> {
         let Linear { columns, input, partner, origin, frequency, returns, .. } = &self.linear;
@@ -213,7 +214,7 @@ impl<const N: usize> Flow<N> {
         let mut force = [excitation[0]; 3];
         let mut now = excitation;
         for order in 1..4 {
-            let free = applied(columns, &states[order - 1]);
+            let free = mat_vec(columns, &states[order - 1]);
             states[order] = each(|i| free[i] + input[i] * now[0]);
             if let Some(partner) = partner {
                 (0..N).for_each(|i| states[order][i] += partner[i] * now[1]);
@@ -231,7 +232,7 @@ impl<const N: usize> Flow<N> {
         (&self.free, &self.forced)
     }
 
-    /// The largest share by which the last term of the series over a step counts in any component of the motion.
+    /// The last term of the series over a step, relative to the largest one: the largest such ratio of any component of the motion.
     pub fn last_term(&self) -> f64 {
         let share = |series: &Polynomial<BLOCKS>| {
             let mut power = 1.0;
@@ -257,7 +258,7 @@ impl<const N: usize> Flow<N> {
         self.linear.partner.is_some()
     }
 
-    /// The flow's numbers.
+    /// The linear equations of the flow.
     pub fn linear(&self) -> &Linear<N> {
         &self.linear
     }
@@ -267,9 +268,9 @@ impl<const N: usize> Flow<N> {
         let mut power = self.phi.map(|column| column.map(|lanes| lanes.to_array()[0]));
         while steps > 0 {
             if steps & 1 == 1 {
-                deviation = applied(&power, &deviation);
+                deviation = mat_vec(&power, &deviation);
             }
-            power = power.map(|column| applied(&power, &column));
+            power = power.map(|column| mat_vec(&power, &column));
             steps >>= 1;
         }
         deviation
@@ -289,15 +290,16 @@ impl<const N: usize> Flow<N> {
         Stride { excitation: [cos * c - sin * s, cos * s + returning * c], y: next }
     }
 
-    /// The motion over the next step where the force's partner has just jumped by 1 N: what a bend of a force that is linear in time adds.
-    pub fn bend(&self) -> &Expansion<N> {
+    /// The response over the next step to a jump of the force's partner by 1 N: the contribution of a bend of a force that is linear in
+    /// time.
+    pub fn partner_response(&self) -> &Expansion<N> {
         &self.forced[1]
     }
 
     /// The force `s` seconds later, `0 <= s <= step`.
     #[inline(always)]
     pub fn excitation_after(&self, excitation: Excitation, s: f64) -> Excitation {
-        turned(excitation, self.rotation.each_ref().map(|part| part.at(s)), self.back)
+        rotated(excitation, self.rotation.each_ref().map(|part| part.at(s)), self.back)
     }
 
     /// The motion from `y` over the next step.
@@ -320,12 +322,12 @@ impl<const N: usize> Flow<N> {
 }
 
 /// A matrix, by its columns, times a vector.
-pub(super) fn applied<const N: usize>(columns: &[[f64; N]; N], y: &[f64; N]) -> [f64; N] {
+pub(super) fn mat_vec<const N: usize>(columns: &[[f64; N]; N], y: &[f64; N]) -> [f64; N] {
     std::array::from_fn(|i| (0..N).map(|j| columns[j][i] * y[j]).sum())
 }
 
-/// Taylor series of the deviation from the origin: `c_{k+1} = (A c_k + b f_k) / (k + 1)`, `f_{k+1} = ω J f_k / (k + 1)`, with `J` without its
-/// second row where the force is linear in time. Several motions at once: each waits for its last term.
+/// Taylor series of the deviation from the origin: `c_{k+1} = (A c_k + b f_k) / (k + 1)`, `f_{k+1} = ω J f_k / (k + 1)`, with `J` without
+/// its second row where the force is linear in time. Several motions are computed together, because each term depends on the one before it.
 fn series<const N: usize, const M: usize>(
     linear: &Linear<N>,
     mut excitations: [Excitation; M],
@@ -372,8 +374,8 @@ impl<const N: usize, const B: usize> Expansion<N, B> {
     }
 }
 
-/// `[f cos, f sin]` of a phase, turned by the angle whose cosine and sine are given; `back` is 0 where the second stays as it is.
+/// `[f cos, f sin]` of a phase, rotated by the angle with this cosine and sine; `back` is 0 where the second stays constant.
 #[inline(always)]
-fn turned([c, s]: Excitation, [cos, sin]: [f64; 2], back: f64) -> Excitation {
+fn rotated([c, s]: Excitation, [cos, sin]: [f64; 2], back: f64) -> Excitation {
     [c * cos - s * sin, s * cos + c * (back * sin)]
 }

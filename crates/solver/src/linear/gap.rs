@@ -1,17 +1,17 @@
-//! The first contact of an exact flight: no crossing is skipped, however short, down to rounding.
+//! The first contact of an exact flight: no crossing is missed, however short, down to rounding.
 
 use crate::motion::polynomial::Polynomial;
 use wide::f64x4;
 
-/// Bernstein coefficients of the cubic that meets `(value, slope)` at both ends of an interval of length `h`: it stays between
-/// the least and the largest of them, and leaves a function by at most [`CUBIC`]` h⁴ max|f⁗|`.
+/// Bernstein coefficients of the cubic that meets `(value, slope)` at both ends of an interval of length `h`: it stays between the least
+/// and the largest of them, and deviates from the function by at most [`CUBIC`]` h⁴ max|f⁗|`.
 #[inline(always)]
 pub fn cubic(h: f64x4, a: [f64x4; 2], b: [f64x4; 2]) -> [f64x4; 4] {
     let third = h / 3.0;
     [a[0], a[0] + a[1] * third, b[0] - b[1] * third, b[0]]
 }
 
-/// Share of `h⁴ max|f⁗|` by which the [`cubic`] may leave a function: `s² (h - s)² / 4!` at `s = h/2`.
+/// Share of `h⁴ max|f⁗|` by which the [`cubic`] may deviate from the function: `s² (h - s)² / 4!` at `s = h/2`.
 pub const CUBIC: f64 = 1.0 / 384.0;
 
 /// Least of four numbers, in each lane.
@@ -26,28 +26,28 @@ pub fn ceiling([a, b, c, d]: [f64x4; 4]) -> f64x4 {
     a.fast_max(b).fast_max(c.fast_max(d))
 }
 
-/// A lower bound of a gap that is zero at the start of an interval, in such units that the gap is open on all of it if the
-/// bound is more than `CUBIC h⁴ max|f⁗|`: its cubic over `s` is a quadratic with Bernstein coefficients
-/// `[3 b1, 3/2 b2, b3] / h`, which leaves the gap over `s` by at most `s (h - s)² / 4! <= h³/162` times `max|f⁗|`.
+/// A lower bound of a gap that is zero at the start of an interval, in such units that the gap is open on all of it if the bound is more
+/// than `CUBIC h⁴ max|f⁗|`: its cubic over `s` is a quadratic with Bernstein coefficients `[3 b1, 3/2 b2, b3] / h`, which deviates from the
+/// gap over `s` by at most `s (h - s)² / 4! <= h³/162` times `max|f⁗|`.
 #[inline(always)]
 pub fn opening_floor([_, b1, b2, b3]: [f64x4; 4]) -> f64x4 {
     (b1 * 3.0).fast_min(b2 * 1.5).fast_min(b3) * (162.0 * CUBIC)
 }
 
-/// Most halvings of a step in the search for a contact. Some tens are common, and a thousand are many.
+/// Limit on halvings of a step in the search for a contact. Some tens are common, and a thousand are many.
 const HALVINGS: u32 = 100_000;
 
 /// The search for a contact has lost all digits to rounding or overflow.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lost;
+pub struct PrecisionLost;
 
 /// The first `s` in `(0, to]` at which the gap becomes negative, or `None`.
 ///
 /// `Some(0.0)` means that the gap is closed at the start and closing. A gap of zero that opens is in flight.
 ///
 /// # Errors
-/// [`Lost`]: the coefficients are not finite, or the gap is so close to zero throughout that no bound decides.
-pub fn first_contact<const B: usize>(mut gap: Polynomial<B>, to: f64) -> Result<Option<f64>, Lost> {
+/// [`PrecisionLost`]: the coefficients are not finite, or the gap is so close to zero throughout that no bound decides.
+pub fn first_contact<const B: usize>(mut gap: Polynomial<B>, to: f64) -> Result<Option<f64>, PrecisionLost> {
     // At s = 0 the damper may just have left the wall (or rest on it): the root there is divided out.
     for _ in 0..4 * B {
         if gap.coefficient(0) != 0.0 {
@@ -61,7 +61,7 @@ pub fn first_contact<const B: usize>(mut gap: Polynomial<B>, to: f64) -> Result<
     }
     let fourth = gap.fourth_derivative_bound(to);
     if !(start + fourth).is_finite() {
-        return Err(Lost);
+        return Err(PrecisionLost);
     }
     let derivative = gap.derivative();
     let at = |s: f64| [gap.at(s), derivative.at(s)];
@@ -86,7 +86,7 @@ impl<F: Fn(f64) -> [f64; 2]> Search<F> {
         &mut self,
         (a, left): (f64, [f64; 2]),
         (b, right): (f64, [f64; 2]),
-    ) -> Result<Option<f64>, Lost> {
+    ) -> Result<Option<f64>, PrecisionLost> {
         let h = b - a;
         let [left_lanes, right_lanes] = [left, right].map(|end| end.map(f64x4::splat));
         if floor(cubic(h.into(), left_lanes, right_lanes)).to_array()[0] >= CUBIC * h.powi(4) * self.fourth {
@@ -102,7 +102,7 @@ impl<F: Fn(f64) -> [f64; 2]> Search<F> {
         if h < self.shortest || mid <= a || mid >= b {
             return Ok((right[0] < 0.0).then_some(b)); // otherwise it touches to rounding, without force
         }
-        self.halvings = self.halvings.checked_sub(1).ok_or(Lost)?;
+        self.halvings = self.halvings.checked_sub(1).ok_or(PrecisionLost)?;
         let centre = (self.at)(mid);
         match self.search((a, left), (mid, centre))? {
             Some(found) => Ok(Some(found)),
@@ -111,8 +111,8 @@ impl<F: Fn(f64) -> [f64; 2]> Search<F> {
     }
 }
 
-/// The root of a function that falls from positive to negative over `[a, b]`: Newton, kept inside by bisection, from the root
-/// of the cubic that meets value and slope at both ends.
+/// The root of a function that falls from positive to negative over `[a, b]`: Newton's iteration safeguarded by bisection, from the root of
+/// the cubic that meets value and slope at both ends.
 fn root(
     at: &impl Fn(f64) -> [f64; 2],
     (mut a, left): (f64, [f64; 2]),
@@ -227,10 +227,13 @@ mod tests {
     #[test]
     fn contract_a_gap_beyond_numbers_or_an_endless_search_is_lost() {
         for beyond in [f64::INFINITY, f64::NAN, 1e308] {
-            assert_eq!(first_contact(Polynomial::<2>::new(&[1.0, -1.0, 0.0, 0.0, beyond]), 1.0), Err(Lost));
+            assert_eq!(
+                first_contact(Polynomial::<2>::new(&[1.0, -1.0, 0.0, 0.0, beyond]), 1.0),
+                Err(PrecisionLost)
+            );
         }
         // Zero throughout, with a bound that allows for more.
         let mut search = Search { at: |_| [0.0, 0.0], fourth: 1.0, shortest: 1e-15, halvings: HALVINGS };
-        assert_eq!(search.search((0.0, [0.0; 2]), (1.0, [0.0; 2])), Err(Lost));
+        assert_eq!(search.search((0.0, [0.0; 2]), (1.0, [0.0; 2])), Err(PrecisionLost));
     }
 }

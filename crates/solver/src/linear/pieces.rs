@@ -11,22 +11,22 @@ pub fn longest_step(force: Option<SampledForce>, longest: f64) -> f64 {
     force.and_then(|force| force.even()).map_or(longest, |[_, step]| longest.min(step))
 }
 
-/// The samples of a record, from one to the next of which a flow takes its steps.
+/// The samples of a record, between which a flow takes its steps.
 pub struct Pieces<const N: usize> {
     force: SampledForce,
     lengths: Lengths<N>,
 }
 
-/// How long its pieces are.
+/// The durations of the pieces.
 enum Lengths<const N: usize> {
-    /// A step of the flow; from this time on, s.
+    /// Each is a step of the flow; the first begins at this time, s.
     Step(f64),
-    /// Any time up to that.
+    /// Any duration up to a step of the flow.
     Any(Box<Uneven<N>>),
 }
 
 impl<const N: usize> Pieces<N> {
-    /// Those of a force that has samples. None where equidistant ones are farther apart than a step of the flow is long.
+    /// The pieces of a sampled force. `None` where equidistant samples are farther apart than a step of the flow.
     pub fn of(force: Option<SampledForce>, flow: &Flow<N>) -> Option<Self> {
         let force = force?;
         let lengths = match force.even() {
@@ -41,14 +41,15 @@ impl<const N: usize> Pieces<N> {
         self.force.at(t)
     }
 
-    /// The next four from sample `i` and the state `y` there on, if they end by the time `to` (s) and none is longer than a step of the flow.
+    /// The next four pieces from sample `i` and the state `y` there, if they end by the time `to` (s) and none is longer than a step of the
+    /// flow.
     #[inline(always)]
     pub fn four(&self, flow: &Flow<N>, i: usize, to: f64, y: &[f64; N]) -> Option<FourPieces<N>> {
         match &self.lengths {
             Lengths::Step(first) => {
                 let time = |count: usize| first + (i + count) as f64 * flow.step();
                 let forces = self.force.forces(i).filter(|_| time(LANES) <= to)?;
-                let (begin, ends) = flow.bent_stride(&forces, y);
+                let (begin, ends) = flow.sampled_stride(&forces, y);
                 let times = f64x4::from([time(1), time(2), time(3), time(4)]);
                 Some(FourPieces { lengths: flow.step().into(), times, begin, ends })
             }
@@ -66,8 +67,8 @@ const STRIDES: usize = 4;
 /// Pieces in a [`Block`].
 pub const PIECES: usize = STRIDES * LANES;
 
-/// Many pieces of an equidistant record in a row, of which nothing is computed but the states at their ends: most of a flight is far from every
-/// wall and from every record, which values at the samples and a bound on second derivatives between them prove.
+/// A block of consecutive pieces of an equidistant record, of which only the states at their ends are computed: most of a flight is far
+/// from every wall and from every running maximum, as values at the samples and a bound on second derivatives between them prove.
 pub struct Block<const N: usize> {
     /// The first moment: time, s; the force and its partner, and the state.
     pub t: f64,
@@ -101,7 +102,7 @@ impl<const N: usize> Block<N> {
         let mut y = *from;
         let ends = std::array::from_fn(|number| {
             let forces = std::array::from_fn(|k| all[number * LANES + k]);
-            let (_, stride) = flow.bent_stride(&forces, &y);
+            let (_, stride) = flow.sampled_stride(&forces, &y);
             y = stride.y.map(|component| component.to_array()[LANES - 1]);
             stride
         });
@@ -114,8 +115,8 @@ impl<const N: usize> Block<N> {
         self.ends[STRIDES - 1].y.map(|component| component.to_array()[LANES - 1])
     }
 
-    /// Bounds on a number in it, of which these are the values at moments side by side, and a bound on its second derivative within a piece: a
-    /// line between two values leaves it by at most an eighth of that times `h²`.
+    /// A lower and an upper bound on a quantity in the block, from `value` at moments side by side and a bound on its second derivative
+    /// within a piece: the chord between two values deviates from it by at most an eighth of that bound times `h²`.
     #[inline(always)]
     pub fn range(&self, value: impl Fn(&[f64x4; 2], &[f64x4; N]) -> f64x4, second: f64) -> [f64; 2] {
         let first = value(&self.force.map(f64x4::splat), &self.from.map(f64x4::splat));

@@ -1,4 +1,4 @@
-//! Steps of the exact flow, several of them side by side, as they are handed to observers.
+//! Steps of the exact flow, several of them side by side, as they are passed to observers.
 
 use super::flow::{Expansion, Flow, FourPieces, Stride};
 use crate::motion::form::{Form, QUINTIC};
@@ -60,8 +60,8 @@ impl<const N: usize> Segment<N> for Step<'_, N> {
     fn jet(&self, at: &Knot<N>) -> Option<Jet<N>> {
         self.flow.is_reduced().then(|| self.flow.jet(at.excitation, &at.y))
     }
-    /// From the energy of the motion; the sharp bound is from its Taylor polynomial over the step. That of the energy takes account of all
-    /// rates, also of those of a part that has decayed.
+    /// From the energy of the motion; the sharp bound is from its Taylor polynomial over the step. The bound by the energy includes all
+    /// rates, also those of a part that has decayed.
     fn quintic_error(&self, form: &Form<N>, _ends: [&Knot<N>; 2], h: f64, sharp: bool) -> Option<f64> {
         Some(if sharp || self.flow.is_reduced() {
             form.quintic_error(&self.expansion().0, self.length) * (h / self.length).powi(6)
@@ -85,17 +85,17 @@ fn moment<const N: usize>(flow: &Flow<N>, from: &Knot<N>, motion: &Expansion<N>,
 pub struct Steps<'a, const N: usize> {
     flow: &'a Flow<N>,
     from: Knot<N>,
-    /// How long they take, and when they end, s.
+    /// Their durations and end times, s.
     lengths: f64x4,
     times: f64x4,
     stride: Stride<N>,
-    /// The force with which each begins, where that is not the one with which the last one ends.
+    /// The force at the beginning of each, where it differs from that at the end of the step before.
     begin: Option<[f64x4; 2]>,
     count: usize,
     energy: f64,
 }
 
-/// Time in whole steps since a moment: counted, not accumulated.
+/// A clock that counts whole steps since a moment instead of accumulating time.
 #[derive(Clone, Copy)]
 pub struct StepClock {
     since: f64,
@@ -115,13 +115,13 @@ impl StepClock {
         self.since + (self.steps + steps as f64) * self.step
     }
 
-    /// The same after 1, 2, … steps.
+    /// Times after 1, 2, … steps, s.
     #[inline(always)]
     fn after_each(&self) -> f64x4 {
         (f64x4::from([1.0, 2.0, 3.0, 4.0]) + self.steps) * self.step + self.since
     }
 
-    /// Counts some steps.
+    /// Advances by some steps.
     pub fn count(&mut self, steps: usize) {
         self.steps += steps as f64;
     }
@@ -139,13 +139,13 @@ impl<'a, const N: usize> Steps<'a, N> {
 
     /// Pieces of a record as steps, the first of which begins at `from`.
     #[inline(always)]
-    pub fn bent(flow: &'a Flow<N>, mut from: Knot<N>, pieces: FourPieces<N>, energy: f64) -> Self {
+    pub fn from_pieces(flow: &'a Flow<N>, mut from: Knot<N>, pieces: FourPieces<N>, energy: f64) -> Self {
         let FourPieces { lengths, times, begin, ends: stride } = pieces;
         from.excitation = begin.map(|lanes| lanes.to_array()[0]);
         Self { flow, from, lengths, times, stride, begin: Some(begin), count: LANES, energy }
     }
 
-    /// The force with which each begins, where the force bends between them.
+    /// The force at the beginning of each, where its slope jumps between them.
     #[inline(always)]
     pub fn begin(&self) -> Option<&[f64x4; 2]> {
         self.begin.as_ref()
@@ -176,7 +176,7 @@ impl<'a, const N: usize> Steps<'a, N> {
         &self.from
     }
 
-    /// The moments at which they end, side by side, also those of steps that were not kept.
+    /// The moments at which they end, side by side, including those of steps that were not kept.
     pub fn ends(&self) -> &Stride<N> {
         &self.stride
     }

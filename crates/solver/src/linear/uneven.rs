@@ -1,25 +1,24 @@
-//! The flow over pieces of a record whose samples are not equidistant: each of them takes its own time.
+//! The flow over pieces of a record whose samples are not equidistant: each has its own duration.
 
 use super::flow::{Expansion, Flow, FourPieces, Stride};
 use crate::motion::lanes::LANES;
 use crate::motion::polynomial::BLOCKS;
 use wide::f64x4;
 
-/// Most terms of a series, without the first.
+/// Limit on terms of a series, without the first.
 const MOST: usize = 4 * BLOCKS - 1;
 
-/// What the first term that is left out may count, relative to the first of its series: as much as over a whole step, `2 · 1.25¹⁸/20!`.
+/// Limit on the first term that is left out, relative to the first of its series: its value over a whole step, `2 · 1.25¹⁸/20!`.
 const LEFT_OUT: f64 = 5e-17;
 
 /// The series of a flow, term by term: `Φ(h) - 1` and `Ψ(h)` of four lengths at once.
 pub struct Uneven<const N: usize> {
-    /// Of a state's component or of a force, what each term but the first adds to each component.
+    /// The contribution of each term but the first to each component, for each component of the state or of the force.
     free: [[[f64; N]; MOST]; N],
     forced: [[[f64; N]; MOST]; 2],
 }
 
 impl<const N: usize> Uneven<N> {
-    /// That of a flow.
     pub fn of(flow: &Flow<N>) -> Self {
         let (free, forced) = flow.series();
         let terms =
@@ -27,8 +26,8 @@ impl<const N: usize> Uneven<N> {
         Self { free: free.each_ref().map(terms), forced: forced.each_ref().map(terms) }
     }
 
-    /// The pieces between five samples at these times (s) and with these forces (N), from the state `y` on; none if one takes longer than a
-    /// step of the flow.
+    /// The pieces between five samples at these times (s) and with these forces (N), from the state `y` on; `None` if one takes longer than
+    /// a step of the flow.
     #[inline(always)]
     pub fn four(
         &self,
@@ -75,8 +74,8 @@ impl<const N: usize> Uneven<N> {
     }
 }
 
-/// How many terms a series over a time has, in units of the flow's fastest rate. The series of a force begins with `h`, that of its partner with
-/// `h²/2`: relative to that, the term of order m is at most `2 x^(m-2)/m!`.
+/// Number of terms of a series over `x`, the duration times the flow's fastest rate. The series of a force begins with `h`, that of its
+/// partner with `h²/2`: relative to that, the term of order m is at most `2 x^(m-2)/m!`.
 fn terms(x: f64) -> usize {
     let (mut order, mut next) = (2, x / 3.0);
     while next > LEFT_OUT && order < MOST {

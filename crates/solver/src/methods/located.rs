@@ -2,7 +2,7 @@
 
 use super::step::{Attempt, OneStep};
 use crate::error::SolverError;
-use crate::linear::gap::{Lost, first_contact};
+use crate::linear::gap::{PrecisionLost, first_contact};
 use crate::motion::knot::Knot;
 use crate::motion::polynomial::Polynomial;
 use crate::response::Work;
@@ -29,15 +29,15 @@ pub struct Start<'a, S, const N: usize> {
 impl<S: System<N>, const N: usize> Start<'_, S, N> {
     /// Shortens a step to the first touch-down or lift-off in it, if there is one.
     ///
-    /// The dense output gives the wall and an approximate time (double crossings inside the step included); a secant iteration on
-    /// the length of the step, taken again each time, gives the exact one.
+    /// The dense output gives the wall and an approximate time (double crossings inside the step included); a secant iteration on the
+    /// length of the step, which is recomputed each time, gives the exact one.
     pub fn located<M: OneStep<N>>(&self, h: f64, attempt: Attempt<N>, work: &mut Work) -> Located<N> {
         let mut first: Option<(f64, Side)> = None;
         for side in Side::BOTH {
-            let there = self.system.indentation(&self.now.y)[side as usize] != f64::NEG_INFINITY;
-            if there && self.contact.is_none_or(|touching| touching == side) {
+            let has_wall = self.system.indentation(&self.now.y)[side as usize] != f64::NEG_INFINITY;
+            if has_wall && self.contact.is_none_or(|touching| touching == side) {
                 let found = first_contact(self.open_polynomial(side, h, &attempt), 1.0);
-                let found = found.map_err(|Lost| SolverError::NonFinite { t: self.now.t })?;
+                let found = found.map_err(|PrecisionLost| SolverError::NonFinite { t: self.now.t })?;
                 first = found.into_iter().map(|s| (s, side)).chain(first).min_by(|a, b| a.0.total_cmp(&b.0));
             }
         }

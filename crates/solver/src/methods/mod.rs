@@ -1,4 +1,4 @@
-//! The general methods: one file a method, and one loop for all of them.
+//! The general methods: one file per method, and one loop for all of them.
 //!
 //! A method is a step with an error estimate and no loop (`step` has the contract); `onestep` takes the steps, and `located` ends
 //! them at touch-downs. Read `step`, one short method (`ode45`), then `onestep`. `dop853` also serves the contacts of the hybrid.

@@ -26,8 +26,8 @@ pub struct Run<'a, S, const N: usize> {
     /// The walls on which the damper has rested since the start: these contacts are no touch-downs.
     resting: [bool; 2],
     budget: Budget,
-    /// The time that the budget is for, s.
-    allowed: f64,
+    /// The time to which the budget extends, s.
+    budget_until: f64,
     /// Work done so far.
     pub work: Work,
 }
@@ -49,13 +49,13 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
             leaving: false,
             resting: z.map(|z| z == 0.0),
             budget: Budget::new(Pace::Steps, settings.max_steps, Work::default(), [t; 2]),
-            allowed: t,
+            budget_until: t,
             work: Work { evaluations: 1, ..Work::default() },
         }
     }
 
-    /// The same run of another system, which goes on from the state reached.
-    pub fn on<'b>(self, system: &'b S) -> Run<'b, S, N> {
+    /// The run of another system, continued from the state reached.
+    pub fn with_system<'b>(self, system: &'b S) -> Run<'b, S, N> {
         let Knot { t, y, .. } = self.now;
         Run {
             system,
@@ -69,17 +69,17 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
             leaving: self.leaving,
             resting: self.resting,
             budget: self.budget,
-            allowed: self.allowed,
+            budget_until: self.budget_until,
             work: Work { evaluations: self.work.evaluations + 1, ..self.work },
         }
     }
 
-    /// Allows the work of a run to time `to` (s), unless that of one as long is allowed already.
-    pub fn allow(&mut self, to: f64) {
-        if to > self.allowed {
+    /// Extends the budget to a run to time `to` (s), unless it already covers one.
+    pub fn extend_budget(&mut self, to: f64) {
+        if to > self.budget_until {
             let span = [self.now.t, to];
-            self.budget = Budget::new(Pace::Steps, self.settings.max_steps, self.spent(), span);
-            self.allowed = to;
+            self.budget = Budget::new(Pace::Steps, self.settings.max_steps, self.budgeted_work(), span);
+            self.budget_until = to;
         }
     }
 
@@ -93,8 +93,8 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
         self.now.y
     }
 
-    /// The work that counts against the budget: equal steps are known beforehand, and cheap, so only they are counted.
-    fn spent(&self) -> Work {
+    /// The work that counts against the budget. Steps of fixed length are known in advance and cheap: for them only steps count.
+    fn budgeted_work(&self) -> Work {
         let fixed = self.settings.method.has_fixed_step();
         Work { evaluations: if fixed { 0 } else { self.work.evaluations }, ..self.work }
     }
@@ -108,7 +108,7 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
         to: f64,
         observer: &mut dyn Observer<N>,
     ) -> Result<(), SolverError> {
-        self.allow(to);
+        self.extend_budget(to);
         while self.now.t < to && !observer.satisfied() {
             let t = self.now.t;
             let (h, attempt) = self.accepted::<M>(to)?;
@@ -152,8 +152,8 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
             observer.touch_down(self.now.t, side);
         }
         for side in Side::BOTH {
-            let apart = self.contact != Some(side) && (z[side as usize] < 0.0 || before == Some(side));
-            self.resting[side as usize] &= !apart;
+            let has_left = self.contact != Some(side) && (z[side as usize] < 0.0 || before == Some(side));
+            self.resting[side as usize] &= !has_left;
         }
     }
 
@@ -179,14 +179,14 @@ impl<'a, S: System<N>, const N: usize> Run<'a, S, N> {
                 && error <= self.tolerance.rtol
             {
                 self.work.steps += 1;
-                self.budget.check(&self.spent(), t)?;
+                self.budget.check(&self.budgeted_work(), t)?;
                 let growth = 1.0 / (1.25 * (error / self.tolerance.rtol).powf(M::POWER)).max(0.2);
                 self.h = Some(if failed { h } else { h * growth });
                 return Ok((h, attempt));
             }
             self.work.rejected += 1;
             if self.settings.method.has_fixed_step() {
-                return Err(SolverError::Unstable { t }); // the only fault that a method without error estimate notices
+                return Err(SolverError::Unstable { t }); // the only failure that a method without error estimate detects
             }
             if h <= shortest {
                 let finite = y.iter().all(|v| v.is_finite());

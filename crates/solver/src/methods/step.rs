@@ -14,7 +14,7 @@ pub struct Attempt<const N: usize> {
     pub dense: [[f64; N]; POWERS],
 }
 
-/// Powers of the step fraction in a dense output: as many as that of DOP853 has.
+/// Powers of the step fraction in a dense output: those of DOP853.
 pub const POWERS: usize = 7;
 
 /// The cubic that meets value and slope `(y, f)` at both ends of a step, as a dense output.
@@ -38,7 +38,7 @@ pub fn unknown_error<const N: usize>(end: &[f64; N]) -> [f64; N] {
     end.map(|v| 0.0 * v)
 }
 
-/// A one-step method with an embedded error estimate. It is handed `f(t, y)` and returns `f` at the end of the step.
+/// A one-step method with an embedded error estimate. It receives `f(t, y)` and returns `f` at the end of the step.
 pub trait OneStep<const N: usize> {
     /// Exponent of the step control, one over the order of the error estimate's method plus one.
     const POWER: f64;

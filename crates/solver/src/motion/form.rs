@@ -17,33 +17,34 @@ pub const QUINTIC: f64 = 1.0 / 46080.0;
 #[derive(Clone, Copy, Debug)]
 pub struct Form<const N: usize> {
     linear: [f64; N],
-    rated: Option<Rated<N>>,
+    rated: Option<RateTerm<N>>,
     squares: [(f64, [f64; N]); 2],
     rest: [f64; N],
     /// Coefficients `[b0, b1, b2]` of a bound in flight, see [`Form::sixth_in_flight`].
     sixth: [f64; 3],
-    /// Those of a bound on the second derivative in flight.
+    /// Coefficients of a bound on the second derivative in flight.
     second: [f64; 3],
-    /// Those of a bound on the quantity itself, see [`Form::most`].
+    /// Coefficients of a bound on the quantity itself, see [`Form::upper_bound`].
     most: [f64; 3],
     slope: SlopeInFlight<N>,
 }
 
 /// The part of a quantity that is linear in the rate of the state.
 #[derive(Clone, Copy, Debug)]
-struct Rated<const N: usize> {
+struct RateTerm<const N: usize> {
     row: [f64; N],
-    /// Its size in flight: a weight for the size of each component of the state, and what the force adds.
+    /// Its magnitude in flight: a weight for the magnitude of each component of the state, and the contribution of the force.
     size: [f64; N],
     force: f64,
-    /// The row of the state that it is in flight less what the force adds, if that is what is meant, and what the force adds.
+    /// Where the contribution of the force is left out: the row of the state that remains in flight, and the weight of the force that is
+    /// left out.
     unforced: Option<([f64; N], f64)>,
 }
 
 /// `|dᵏ(row · d)/dtᵏ| <= bounds[k][0] e + bounds[k][1]` in flight, wherever the energy norm of `d` is at most `e` (√J).
 ///
-/// From `d⁽ᵏ⁾ = Aᵏ d + Σ_j A^(k-1-j) b (P cos ωt)⁽ʲ⁾`: the dual energy norm of `row Aᵏ`, and the sum of the terms of the force. One that is
-/// linear in time has two of them.
+/// From `d⁽ᵏ⁾ = Aᵏ d + Σ_j A^(k-1-j) b (P cos ωt)⁽ʲ⁾`: the dual energy norm of `row Aᵏ`, and the sum of the terms of the force. A force
+/// that is linear in time has two terms.
 pub fn derivative_bounds<S: LinearSystem<N>, const N: usize, const K: usize>(
     system: &S,
     row: [f64; N],
@@ -51,7 +52,7 @@ pub fn derivative_bounds<S: LinearSystem<N>, const N: usize, const K: usize>(
     derivative_bounds_of(system, &system.linear(), row)
 }
 
-/// The same of a motion that these equations describe.
+/// [`derivative_bounds`] for a motion with these linear equations.
 pub fn derivative_bounds_of<S: LinearSystem<N>, const N: usize, const K: usize>(
     system: &S,
     linear: &Linear<N>,
@@ -63,20 +64,20 @@ pub fn derivative_bounds_of<S: LinearSystem<N>, const N: usize, const K: usize>(
     let (mut row, mut forced, mut latest) = (row, 0.0, 0.0);
     std::array::from_fn(|_| {
         let bound = [system.dual_energy_norm(&row), amplitude * forced];
-        let felt = dot(&row, &linear.input);
-        let felt = linear.partner.map_or(felt.abs(), |partner| felt.hypot(dot(&row, &partner)));
+        let gain = dot(&row, &linear.input);
+        let gain = linear.partner.map_or(gain.abs(), |partner| gain.hypot(dot(&row, &partner)));
         forced = if linear.returns == 0.0 {
-            felt + if slope > 0.0 { slope / amplitude * latest } else { 0.0 }
+            gain + if slope > 0.0 { slope / amplitude * latest } else { 0.0 }
         } else {
-            forced * linear.frequency + felt
+            forced * linear.frequency + gain
         };
-        latest = felt;
+        latest = gain;
         row = linear.columns.map(|column| dot(&row, &column));
         bound
     })
 }
 
-/// Terms of the polynomials that a motion in flight consists of.
+/// Terms of the polynomials of a motion in flight.
 const TERMS: usize = 4 * BLOCKS;
 
 /// Binomial coefficients `5! / k! (5 - k)!`.
@@ -119,7 +120,7 @@ impl<const N: usize> Form<N> {
         let linear = system.linear();
         let size =
             |of: &[f64; N]| rated.iter().zip(of).map(|(weight, a)| times(weight.abs(), a.abs())).sum::<f64>();
-        let rated = Rated {
+        let rated = RateTerm {
             row: rated,
             size: linear.columns.map(|column| size(&column)),
             force: times(system.amplitude(), size(&linear.input)),
@@ -130,19 +131,19 @@ impl<const N: usize> Form<N> {
         Self { rated: Some(rated), sixth, second, most, ..of_row }
     }
 
-    /// The same less what the force adds to the rate of the state. Its bounds are those with the force, whose terms all count by their sizes;
-    /// the sharp one is that of its own polynomial.
+    /// The form without the contribution of the force to the rate of the state. Its bounds are those with the force, whose terms all enter
+    /// by magnitude; only the sharp bound is that of its own polynomial.
     #[must_use]
     pub fn unforced<S: LinearSystem<N>>(self, system: &S) -> Self {
         let linear = system.linear();
         let row = |of: [f64; N]| linear.columns.map(|column| of.iter().zip(column).map(|(w, a)| w * a).sum());
         let added = |of: [f64; N]| of.iter().zip(linear.input).map(|(w, b)| w * b).sum();
         let rated =
-            self.rated.map(|rated| Rated { unforced: Some((row(rated.row), added(rated.row))), ..rated });
+            self.rated.map(|rated| RateTerm { unforced: Some((row(rated.row), added(rated.row))), ..rated });
         Self { rated, ..self }
     }
 
-    /// What the force adds to it in flight at most.
+    /// The largest contribution of the force in flight.
     pub fn size_of_force(&self) -> f64 {
         self.rated.map_or(0.0, |rated| rated.force)
     }
@@ -155,21 +156,21 @@ impl<const N: usize> Form<N> {
 
     /// `(mass v² + stiffness x²) / 2` of the components `x` and `v = x'` of the deviation from rest.
     ///
-    /// It changes at the rate `v G`, with `G = mass v' + stiffness x` the sum of all forces but this spring's; so its sixth
-    /// derivative is the fifth of a product, by Leibniz's rule, each factor by its bound.
+    /// It changes at the rate `v G`, with `G = mass v' + stiffness x` the sum of all forces but this spring's; so its sixth derivative is
+    /// the fifth of a product, bounded by Leibniz's rule and the bounds of both factors.
     pub fn energy<S: LinearSystem<N>>(system: &S, [mass, stiffness]: [f64; 2], [x, v]: [usize; 2]) -> Self {
         let linear = system.linear();
         let mut force: [f64; N] = std::array::from_fn(|j| mass * linear.columns[j][v]);
         force[x] += stiffness;
         let speeds: [[f64; 2]; 6] = derivative_bounds(system, unit(v));
         let mut forces: [[f64; 2]; 6] = derivative_bounds(system, force);
-        let felt = mass * linear.input[v].abs();
-        let mut driving = felt * system.amplitude();
+        let gain = mass * linear.input[v].abs();
+        let mut driving = gain * system.amplitude();
         for (order, force) in forces.iter_mut().enumerate() {
             force[1] += driving;
             driving = match order {
                 _ if linear.returns != 0.0 => driving * linear.frequency,
-                0 => felt * system.structure().force_bounds()[1],
+                0 => gain * system.structure().force_bounds()[1],
                 _ => 0.0,
             };
         }
@@ -187,14 +188,15 @@ impl<const N: usize> Form<N> {
         let (sixth, second) = (derivative(&FIFTH), derivative(&[1.0, 1.0]));
         let (none, squares) = ([0.0; N], [(mass, unit(v)), (stiffness, unit(x))]);
         let slope = SlopeInFlight::new(system, &none, &squares);
-        // The structure's energy is a part of the whole; the paper's of the damper is not, for its spring is stretched by another length.
+        // The structure's energy is a part of the total energy; the paper's energy of the damper is not, because its spring has another
+        // deflection.
         let norms = [v, x].map(|i| system.dual_energy_norm(&unit(i)).powi(2));
         let share = if x == 0 { 0.5 } else { 0.5 * (times(mass, norms[0]) + times(stiffness, norms[1])) };
         let most = [0.0, 0.0, share];
         Self { linear: none, rated: None, squares, rest: linear.origin, sixth, second, most, slope }
     }
 
-    /// The quantity and its first two time derivatives where a motion in flight changes like this.
+    /// The quantity and its first two time derivatives in flight, from the derivatives of the motion.
     #[cold]
     pub fn rates(&self, jet: &Jet<N>) -> [f64; 3] {
         let dot =
@@ -218,7 +220,7 @@ impl<const N: usize> Form<N> {
 
     /// A bound on the quantity wherever the energy norm of the state is at most `energy` (√J); NaN or infinite where there is none.
     #[inline(always)]
-    pub fn most(&self, energy: f64) -> f64 {
+    pub fn upper_bound(&self, energy: f64) -> f64 {
         let [m0, m1, m2] = self.most;
         m0 + (m1 + m2 * energy) * energy
     }
@@ -229,13 +231,13 @@ impl<const N: usize> Form<N> {
         at_energy(self.sixth, energy)
     }
 
-    /// The same on the second.
+    /// A bound on the second time derivative in flight, as [`Self::sixth_in_flight`].
     #[inline(always)]
     pub fn second_in_flight(&self, energy: f64) -> f64 {
         at_energy(self.second, energy)
     }
 
-    /// The sum of the sizes of its terms in flight, which sets its rounding error.
+    /// The sum of the magnitudes of its terms in flight, which sets its rounding error.
     pub fn size(&self, y: &[f64; N]) -> f64 {
         let size = |row: &[f64; N]| {
             row.iter()
@@ -244,7 +246,7 @@ impl<const N: usize> Form<N> {
                 .map(|((r, y), y0)| times(r.abs(), y.abs() + y0.abs()))
                 .sum::<f64>()
         };
-        // Of a square, the rounding error of its root times that root: far below the square of what cancels in it.
+        // For a square, the rounding error of its root times that root: far below the square of the terms that cancel in it.
         let square = |(weight, row): &(f64, [f64; N])| {
             let (size, deviations) = (size(row), y.iter().zip(&self.rest).map(|(y, y0)| y - y0));
             let root: f64 = row.iter().zip(deviations).map(|(r, d)| times(*r, d)).sum();
@@ -255,8 +257,8 @@ impl<const N: usize> Form<N> {
         size(&self.linear) + squares.sum::<f64>() + rated
     }
 
-    /// A bound on how far the quantity leaves the quintic that meets it, its slope and its curvature at both ends, over `length`
-    /// seconds on which the components of the state are these polynomials in time.
+    /// A bound on the deviation of the quantity from the quintic that meets its value, slope and curvature at both ends, over `length`
+    /// seconds in which the components of the state are these polynomials in time.
     ///
     /// The quantity is itself a polynomial there, `Σ_j q_j τʲ` with `τ = t / length`; its sixth derivative is at most
     /// `Σ_j |q_j| j! / (j - 6)!`, and `j! / (j - 6)! 46080` is the binomial coefficient `j` over 6, over 64.
@@ -282,10 +284,10 @@ impl<const N: usize> Form<N> {
                 }
             }
         }
-        let (mut error, mut choose) = (0.0, 1.0 / 64.0);
+        let (mut error, mut binomial) = (0.0, 1.0 / 64.0);
         for (j, q) in q.iter().enumerate().skip(6) {
-            error += choose * q.abs();
-            choose *= (j + 1) as f64 / (j - 5) as f64;
+            error += binomial * q.abs();
+            binomial *= (j + 1) as f64 / (j - 5) as f64;
         }
         error
     }

@@ -15,7 +15,7 @@ pub struct Knot<const N: usize> {
     pub clock: [f64; 2],
 }
 
-/// How a motion changes at a moment.
+/// The time derivatives of a motion at a moment.
 #[derive(Clone, Copy, Debug)]
 pub struct Jet<const N: usize> {
     /// The deviation from the origin and its first three time derivatives.

@@ -1,4 +1,4 @@
-//! A contact that was computed at once, as linear equations for small changes.
+//! A contact that was computed at once, linearised for small changes.
 
 use super::knot::Knot;
 use nalgebra::DMatrix;
@@ -22,11 +22,11 @@ pub struct LinearContact {
     pub times: Vec<f64>,
     /// `√z` at the nodes, √m.
     pub roots: Vec<f64>,
-    /// How many of the integrals count.
+    /// Number of the integrals that are significant.
     pub terms: usize,
     /// The integrals at the nodes and at lift-off: `z^1.5` and powers of time.
     pub impulses: Vec<[f64; MOMENTS]>,
-    /// The same of `z^1.5 dz/dt`, which a loss adds to the force; none where they were not asked for.
+    /// The integrals of `z^1.5 dz/dt`, which a loss adds to the force; empty unless requested.
     pub drags: Vec<[f64; MOMENTS]>,
     /// `A^k b`, and by how much it reduces the indentation.
     pub kicks: [[f64; 4]; MOMENTS],
@@ -34,6 +34,6 @@ pub struct LinearContact {
     pub gains: [f64; MOMENTS],
     /// By how much `z^1.5` at each node reduces the indentation at the nodes and at lift-off, a column for each node.
     pub reductions: DMatrix<f64>,
-    /// What it adds to the state at lift-off.
+    /// What `z^1.5` at each node adds to the state at lift-off.
     pub additions: Vec<[f64; 4]>,
 }

@@ -1,8 +1,8 @@
 //! The pieces that every motion is made of.
 //!
-//! A method hands its motion over as smooth segments between two moments, and observers need bounds on how fast a quantity can change
-//! on them. No file here knows a method or an observer. Read `knot`, then `segment`, then `form`; `linearised` is a contact for small
-//! changes; `polynomial` and `lanes` hold the arithmetic.
+//! A method passes its motion on as smooth segments between two moments, and observers need bounds on how fast a quantity can change on
+//! them. No file here knows a method or an observer. Read `knot`, then `segment`, then `form`; `linearised` is a contact for small changes;
+//! `polynomial` and `lanes` hold the arithmetic.
 
 pub mod form;
 pub mod knot;

@@ -10,7 +10,7 @@ pub const BLOCKS: usize = 5;
 pub struct Polynomial<const B: usize>(pub [f64x4; B]);
 
 impl<const B: usize> Polynomial<B> {
-    /// The polynomial with these coefficients, that of 1 first; no more than `4 B`.
+    /// The polynomial with these coefficients, lowest order first; at most `4 B` of them.
     pub fn new(coefficients: &[f64]) -> Self {
         debug_assert!(coefficients.len() <= 4 * B, "a coefficient would be lost");
         let coefficient = |k: usize| coefficients.get(k).copied().unwrap_or(0.0);
@@ -23,7 +23,7 @@ impl<const B: usize> Polynomial<B> {
         self.0[k / 4].to_array()[k % 4]
     }
 
-    /// The same with another constant term.
+    /// The polynomial with another constant term.
     #[inline(always)]
     pub fn with_constant(mut self, constant: f64) -> Self {
         self.0[0].as_mut_array()[0] = constant;
@@ -54,7 +54,7 @@ impl<const B: usize> Polynomial<B> {
         self.shifted(|_| f64x4::ONE)
     }
 
-    /// Every coefficient moves to the place of the one before it, multiplied by the factors of the block of that place.
+    /// Shifts every coefficient down by one order and multiplies it by the factor of its new place.
     #[inline(always)]
     fn shifted(&self, factors: impl Fn(usize) -> f64x4) -> Self {
         Self(std::array::from_fn(|b| {

@@ -17,12 +17,12 @@ pub trait Segment<const N: usize> {
     fn in_flight(&self) -> bool {
         false
     }
-    /// How the motion changes at a moment of it, where that is known better than by the equations of the whole system: a fast part that
-    /// has decayed has left its rounding error, which these would take for motion.
+    /// The derivatives of the motion at a moment of it, where they are known better than from the equations of the whole system: a fast
+    /// part that has decayed leaves a rounding error, which these would mistake for motion.
     fn jet(&self, _at: &Knot<N>) -> Option<Jet<N>> {
         None
     }
-    /// How many times as long as usual a look at it takes.
+    /// The cost of an evaluation in it, relative to the usual one.
     fn cost(&self) -> u64 {
         1
     }
@@ -30,15 +30,14 @@ pub trait Segment<const N: usize> {
     fn energy(&self) -> f64 {
         f64::INFINITY
     }
-    /// How far a quantity may leave the quintic that meets its value, slope and curvature (with respect to `θ`) at two places `h`
-    /// apart: `h⁶/46080` times a bound on its sixth derivative between them; a `sharp` bound may cost more. Infinite where they are
-    /// too far apart for a bound; `None` for a motion without a known bound.
+    /// A bound on the deviation of a quantity from the quintic that meets its value, slope and curvature (with respect to `θ`) at two
+    /// places `h` apart: `h⁶/46080` times a bound on its sixth derivative between them; a `sharp` bound may cost more. Infinite where they
+    /// are too far apart for a bound; `None` for a motion without a known bound.
     fn quintic_error(&self, _form: &Form<N>, _ends: [&Knot<N>; 2], _h: f64, _sharp: bool) -> Option<f64> {
         None
     }
-    /// How far a quantity may rise between two places `h` apart above the larger of its values there, from its slopes (with respect to `θ`)
-    /// at both, by a bound that is coarse but holds where [`Self::quintic_error`] is infinite; infinite itself for a motion without such a
-    /// bound.
+    /// How far a quantity may rise between two places `h` apart above the larger of its values there, given its slopes (with respect to
+    /// `θ`) at both: a coarse bound that also holds where [`Self::quintic_error`] is infinite. Infinite for a motion without such a bound.
     fn rise(&self, _form: &Form<N>, _ends: [&Knot<N>; 2], _slopes: [f64; 2], _h: f64) -> f64 {
         f64::INFINITY
     }

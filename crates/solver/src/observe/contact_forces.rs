@@ -20,7 +20,7 @@ pub struct WallForce<'a> {
 }
 
 impl<'a> WallForce<'a> {
-    /// That of one wall while the other is not touched: `F = -s (m2 a2 + c2 (v2 - v1) + k2 (x2 - x1 - D))` with the side's sign `s`.
+    /// The force of one wall while the other is not touched: `F = -s (m2 a2 + c2 (v2 - v1) + k2 (x2 - x1 - D))` with the side's sign `s`.
     pub fn new(system: &'a Coupled, side: Side) -> Self {
         let ([_, m2], [k2, c2]) = (system.masses(), system.damper_force_weights());
         let [row, rated] =
@@ -54,13 +54,13 @@ pub struct ContactForces<'a> {
 }
 
 impl<'a> ContactForces<'a> {
-    /// Watches the walls of a system, if they lose energy.
+    /// Observes the walls of a system, if they lose energy.
     pub fn of(system: &'a Coupled) -> Option<Self> {
         let wall = |side| RunningMaximum::new(WallForce::new(system, side), f64::INFINITY);
         system.is_lossy().then(|| Self { system, walls: Side::BOTH.map(wall) })
     }
 
-    /// The largest force of each wall, N, and when; `-∞` and NaN of a wall that was not touched.
+    /// The largest force of each wall, N, and when; `-∞` and NaN for a wall that was not touched.
     pub fn records(&self) -> [Extreme; 2] {
         self.walls.each_ref().map(RunningMaximum::record)
     }
@@ -85,10 +85,10 @@ impl Observer<4> for ContactForces<'_> {
     fn skips(&self, _block: &Block<4>) -> bool {
         true
     }
-    fn seam(&mut self) {
-        self.walls.seam();
+    fn discontinuity(&mut self) {
+        self.walls.discontinuity();
     }
-    fn looks(&self) -> u64 {
-        Observer::<4>::looks(&self.walls)
+    fn search_work(&self) -> u64 {
+        Observer::<4>::search_work(&self.walls)
     }
 }

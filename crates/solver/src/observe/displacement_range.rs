@@ -15,20 +15,26 @@ pub struct DisplacementRange<'a> {
     system: &'a Coupled,
     cutoff: f64,
     ends: [RunningMaximum<RelativePosition<'a>>; 2],
-    /// The forces themselves, of walls that lose energy.
+    /// The contact forces, where walls lose energy.
     forces: Option<ContactForces<'a>>,
     /// When a rigid wall was first struck, s.
-    struck: Option<f64>,
+    first_impact: Option<f64>,
 }
 
 impl<'a> DisplacementRange<'a> {
-    /// Watches a damper; `cutoff` is for whoever reads it.
+    /// Observes a damper; `cutoff` is kept for the reader of the range.
     pub fn new(system: &'a Coupled, cutoff: f64) -> Self {
         let end = |sign: f64| RunningMaximum::new(RelativePosition::new(system, sign), f64::INFINITY);
-        Self { system, cutoff, ends: [1.0, -1.0].map(end), forces: ContactForces::of(system), struck: None }
+        Self {
+            system,
+            cutoff,
+            ends: [1.0, -1.0].map(end),
+            forces: ContactForces::of(system),
+            first_impact: None,
+        }
     }
 
-    /// The value above which its reader needs no more.
+    /// The value above which the reader of the range lets the run end.
     pub fn cutoff(&self) -> f64 {
         self.cutoff
     }
@@ -36,35 +42,39 @@ impl<'a> DisplacementRange<'a> {
     /// The stroke, m, and when; `-∞` and NaN while no motion has been seen.
     pub fn stroke(&self) -> Extreme {
         let rest = self.system.rest_distance();
-        self.larger(|_, place| (place - rest).abs())
+        self.larger_of_ends(|_, place| (place - rest).abs())
     }
 
-    /// The largest contact force on either wall, N, and when; `-∞` and NaN while no motion has been seen. That of an impact with a rigid wall
-    /// is infinite.
+    /// The largest contact force on either wall, N, and when; `-∞` and NaN while no motion has been seen. The force of an impact with a
+    /// rigid wall is infinite.
     pub fn force(&self) -> Extreme {
         let system = self.system;
-        if let Some(time) = self.struck {
+        if let Some(time) = self.first_impact {
             return Extreme { value: f64::INFINITY, time };
         }
         if let Some(forces) = &self.forces {
             let [near, far] = forces.records();
             let larger = if near.value > far.value { near } else { far };
-            return if larger.value > 0.0 { larger } else { self.larger(|_, _| 0.0) };
+            return if larger.value > 0.0 { larger } else { self.larger_of_ends(|_, _| 0.0) };
         }
-        self.larger(|side, place| hertz_force(system.hertz(side), side.sign() * (place - system.wall(side))))
+        self.larger_of_ends(|side, place| {
+            hertz_force(system.hertz(side), side.sign() * (place - system.wall(side)))
+        })
     }
 
-    /// The largest contact pressure on either wall, N/m², and when; `-∞` and NaN while no motion has been seen. That of an impact with a rigid wall is
-    /// infinite, as its force is.
+    /// The largest contact pressure on either wall, N/m², and when; `-∞` and NaN while no motion has been seen. The pressure of an impact
+    /// with a rigid wall is infinite, as its force is.
     pub fn pressure(&self) -> Extreme {
         let system = self.system;
-        if self.struck.is_some() {
+        if self.first_impact.is_some() {
             return self.force();
         }
-        self.larger(|side, place| system.wall_pressure(side, side.sign() * (place - system.wall(side))))
+        self.larger_of_ends(|side, place| {
+            system.wall_pressure(side, side.sign() * (place - system.wall(side)))
+        })
     }
 
-    /// The largest value of a measure of the damper; of all others, the stroke.
+    /// The largest value of a measure of the damper; for all other measures, the stroke.
     pub fn largest(&self, measure: Measure) -> Extreme {
         match measure {
             Measure::ContactForce => self.force(),
@@ -73,8 +83,8 @@ impl<'a> DisplacementRange<'a> {
         }
     }
 
-    /// The larger of a value at both ends of the range, the one nearest to each wall.
-    fn larger(&self, value: impl Fn(Side, f64) -> f64) -> Extreme {
+    /// The larger of the values at both ends of the range, each computed for the wall nearest to it.
+    fn larger_of_ends(&self, value: impl Fn(Side, f64) -> f64) -> Extreme {
         let [farthest, nearest] = self.ends.each_ref().map(RunningMaximum::record);
         if farthest.value == f64::NEG_INFINITY {
             return farthest;
@@ -103,13 +113,13 @@ impl Observer<4> for DisplacementRange<'_> {
     }
     fn impact(&mut self, impact: &Impact<4>) {
         self.ends.impact(impact);
-        self.struck.get_or_insert(impact.after.t);
+        self.first_impact.get_or_insert(impact.after.t);
     }
-    fn seam(&mut self) {
-        self.ends.seam();
-        self.forces.seam();
+    fn discontinuity(&mut self) {
+        self.ends.discontinuity();
+        self.forces.discontinuity();
     }
-    fn looks(&self) -> u64 {
-        Observer::<4>::looks(&self.ends) + self.forces.looks()
+    fn search_work(&self) -> u64 {
+        Observer::<4>::search_work(&self.ends) + self.forces.search_work()
     }
 }

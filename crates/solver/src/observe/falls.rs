@@ -1,15 +1,15 @@
-//! Where a rate falls through zero: the maximum of what it is the rate of.
+//! Finds where a rate falls through zero: a maximum of the quantity with this rate.
 
 /// A place and the rate there.
 pub type Place = (f64, f64);
 
-/// Steps in a row that may fail to halve the bracket of a root before it is halved.
+/// Consecutive steps that may fail to halve the bracket of a root before a bisection.
 const PATIENCE: u32 = 3;
-/// Most steps: to rounding, were every halving to take as many as it may.
+/// Limit on steps: to rounding, even if every halving takes as many as it may.
 const STEPS: u32 = 53 * (PATIENCE + 1);
 
-/// Where a rate that is positive at the one end and not at the other falls through zero, to rounding of the later end: regula falsi that
-/// lowers the value of an end that stays (N. Anderson and A. Bjorck, 1973), kept going by bisection.
+/// Where a rate that is positive at the one end and not at the other falls through zero, to rounding of the later end: regula falsi with
+/// the value at a retained end scaled down (N. Anderson and A. Bjorck, 1973), safeguarded by bisection.
 pub fn falls(rate: impl Fn(f64) -> f64, mut from: Place, mut to: Place) -> f64 {
     // No step ends nearer to an end than this, so that the last ones close the bracket about the root.
     let least = f64::EPSILON * to.0;

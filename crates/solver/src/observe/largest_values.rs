@@ -13,11 +13,11 @@ use retune_model::{Coupled, Measure, PerMeasure};
 
 type Motion<'a> = Magnitude<StructureMotion<'a, Coupled, 4>>;
 
-/// Those of the structure's motion.
+/// The measures of the structure's motion.
 const MOTIONS: [Measure; 4] =
     [Measure::Displacement, Measure::Velocity, Measure::Acceleration, Measure::GroundForce];
 
-/// The largest values of the measures that are asked for.
+/// Observes the largest values of the requested measures.
 pub struct LargestValues<'a> {
     energy: Option<RunningMaximum<PrimaryEnergy<'a>>>,
     /// In the order of [`MOTIONS`].
@@ -26,7 +26,7 @@ pub struct LargestValues<'a> {
 }
 
 impl<'a> LargestValues<'a> {
-    /// Watches a structure and its damper for some measures.
+    /// Observes a structure and its damper for some measures.
     pub fn new(system: &'a Coupled, measures: PerMeasure<bool>) -> Self {
         let motion = |measure, quantity: fn(&'a Coupled, f64) -> StructureMotion<'a, Coupled, 4>| {
             let size = || Magnitude::new(|sign| quantity(system, sign), f64::INFINITY);
@@ -46,7 +46,7 @@ impl<'a> LargestValues<'a> {
         }
     }
 
-    /// The largest values so far, 0 of what is not watched and before any motion was seen.
+    /// The largest values so far, 0 for what is not observed, and before any motion was seen.
     pub fn values(&self) -> PerMeasure<f64> {
         let mut values = PerMeasure::all(0.0);
         let mut set = |measure, value: f64| values.set(measure, value.max(0.0));
@@ -87,12 +87,12 @@ impl Observer<4> for LargestValues<'_> {
         self.motions.impact(impact);
         self.range.impact(impact);
     }
-    fn seam(&mut self) {
-        self.energy.seam();
-        self.motions.seam();
-        self.range.seam();
+    fn discontinuity(&mut self) {
+        self.energy.discontinuity();
+        self.motions.discontinuity();
+        self.range.discontinuity();
     }
-    fn looks(&self) -> u64 {
-        Observer::<4>::looks(&self.energy) + self.motions.looks() + self.range.looks()
+    fn search_work(&self) -> u64 {
+        Observer::<4>::search_work(&self.energy) + self.motions.search_work() + self.range.search_work()
     }
 }

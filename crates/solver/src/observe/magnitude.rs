@@ -1,4 +1,4 @@
-//! The largest size of a quantity of either sign.
+//! The largest magnitude of a quantity of either sign.
 
 use super::observer::{Impact, Observer, Path};
 use super::quantity::Quantity;
@@ -8,17 +8,17 @@ use crate::linear::steps::Steps;
 use crate::motion::segment::Segment;
 use crate::response::Extreme;
 
-/// The largest `|f|` of a quantity `f`, located to rounding: the running maxima of `f` and `-f`, each of which drops what the other
-/// has surpassed.
+/// The largest `|f|` of a quantity `f`, located to rounding: the running maxima of `f` and `-f`, each of which skips what the other has
+/// surpassed.
 pub struct Magnitude<Q>([RunningMaximum<Q>; 2]);
 
 impl<Q> Magnitude<Q> {
-    /// Watches the quantity of either sign that `quantity` gives for 1 and for -1; the run may end early once it exceeds `cutoff`.
+    /// Observes the quantity with either sign, `quantity(1)` and `quantity(-1)`; the run may end early once it exceeds `cutoff`.
     pub fn new(quantity: impl Fn(f64) -> Q, cutoff: f64) -> Self {
         Self([1.0, -1.0].map(|sign| RunningMaximum::new(quantity(sign), cutoff)))
     }
 
-    /// The largest size so far and its time; `-∞` and NaN before any motion was seen.
+    /// The largest magnitude so far and its time; `-∞` and NaN before any motion was seen.
     pub fn record(&self) -> Extreme {
         let [plus, minus] = self.0.each_ref().map(RunningMaximum::record);
         if minus.value > plus.value { minus } else { plus }
@@ -30,26 +30,26 @@ impl<Q> Magnitude<Q> {
         plus.max(minus)
     }
 
-    /// Lets each look at a part of the motion with the record of both.
+    /// Passes a part of the motion to both maxima, each with the record of both.
     #[inline(always)]
-    fn each(&mut self, mut look: impl FnMut(&mut RunningMaximum<Q>)) {
+    fn visit_both(&mut self, mut visit: impl FnMut(&mut RunningMaximum<Q>)) {
         let [plus, minus] = &mut self.0;
-        plus.raise(minus.record());
-        look(plus);
-        minus.raise(plus.record());
-        look(minus);
+        plus.raise_record(minus.record());
+        visit(plus);
+        minus.raise_record(plus.record());
+        visit(minus);
     }
 }
 
 impl<const N: usize, Q: Quantity<N>> Observer<N> for Magnitude<Q> {
     fn segment(&mut self, segment: &dyn Segment<N>) {
-        self.each(|one| one.segment(segment));
+        self.visit_both(|one| one.segment(segment));
     }
     fn path(&mut self, path: &dyn Path<N>) {
-        self.each(|one| one.path(path));
+        self.visit_both(|one| one.path(path));
     }
     fn steps(&mut self, steps: &Steps<'_, N>) {
-        self.each(|one| one.steps(steps));
+        self.visit_both(|one| one.steps(steps));
     }
     fn skips(&self, block: &Block<N>) -> bool {
         let most = self.record().value;
@@ -58,13 +58,13 @@ impl<const N: usize, Q: Quantity<N>> Observer<N> for Magnitude<Q> {
     fn impact(&mut self, impact: &Impact<N>) {
         self.0.impact(impact);
     }
-    fn seam(&mut self) {
-        Observer::<N>::seam(&mut self.0);
+    fn discontinuity(&mut self) {
+        Observer::<N>::discontinuity(&mut self.0);
     }
     fn satisfied(&self) -> bool {
         self.0.iter().any(Observer::satisfied)
     }
-    fn looks(&self) -> u64 {
-        Observer::<N>::looks(&self.0)
+    fn search_work(&self) -> u64 {
+        Observer::<N>::search_work(&self.0)
     }
 }

@@ -1,11 +1,10 @@
-//! Observers: they look at a motion while it is computed, and keep a few numbers of it.
+//! Observers: they follow a motion while it is computed, and keep a few numbers of it.
 //!
-//! A method hands its motion over segment by segment, and nothing else is stored on the way, so a run allocates nothing. Read
-//! `observer` (the contract, and how observers compose), then `quantity` and `running_maximum` (E1max and its like), and for its
-//! proof `search` and `quintic`. `structure` has the quantities of the structure's motion, `magnitude` the largest size of a quantity
-//! of either sign. `counters` see events alone; `displacement_range` gives stroke and contact forces, `contact_forces` those of
-//! walls that lose energy; `largest_values` has any of the
-//! measures, `since` a part of a run. `falls` finds where a rate falls through zero.
+//! A method passes its motion on segment by segment and stores nothing else, so a run allocates nothing. Read `observer` (the contract, and
+//! how observers compose), then `quantity` and `running_maximum` (E1max and similar values), and for its proof `search` and `quintic`.
+//! `structure` has the quantities of the structure's motion, `magnitude` the largest magnitude of a quantity of either sign. `counters` see
+//! events alone; `displacement_range` gives stroke and contact forces, `contact_forces` those of walls that lose energy; `largest_values`
+//! has any of the measures, `since` a part of a run. `falls` finds where a rate falls through zero.
 
 pub mod contact_forces;
 pub mod counters;
@@ -21,7 +20,7 @@ pub(crate) mod search;
 pub mod since;
 pub mod structure;
 
-// For callers of the crate; inside it every file names the file that it means.
+// For callers of the crate; inside it, files import from the file that defines an item.
 pub use crate::motion::form::Form;
 pub use crate::motion::knot::Knot;
 pub use crate::motion::segment::Segment;

@@ -1,4 +1,4 @@
-//! Observers: a method hands over its motion segment by segment, and each observer keeps its own result.
+//! Observers: a method passes on its motion segment by segment, and each observer keeps its own result.
 
 use crate::linear::pieces::Block;
 use crate::linear::steps::Steps;
@@ -23,21 +23,21 @@ pub trait Path<const N: usize> {
     fn second_derivative(&self, form: &Form<N>) -> f64;
     /// A bound on the first time derivative of a quantity; infinite where none is known.
     fn first_derivative(&self, form: &Form<N>) -> f64;
-    /// Shows the motion that follows a knot, up to the next one.
-    fn show(&self, piece: usize, see: &mut dyn FnMut(Part<'_, N>));
-    /// The contact that it is, as linear equations for small changes; with what a small loss would take away, if it is asked for.
+    /// Visits the motion from a knot to the next one.
+    fn show(&self, piece: usize, visit: &mut dyn FnMut(Part<'_, N>));
+    /// The contact linearised for small changes, with the effect of a small loss if requested.
     fn linearised(&self, loss: bool) -> LinearContact;
 }
 
-/// What a [`Path`] shows of itself.
+/// A part of a [`Path`], as observers see it.
 pub enum Part<'a, const N: usize> {
     /// A segment of the motion.
     Segment(&'a dyn Segment<N>),
-    /// The slope of the force jumps: see [`Observer::seam`].
-    Seam,
+    /// The slope of the force jumps: see [`Observer::discontinuity`].
+    Discontinuity,
 }
 
-/// Most knots of a [`Path`].
+/// Limit on knots of a [`Path`].
 pub const MOST_KNOTS: usize = 26;
 
 /// An impact with a rigid wall: the state jumps.
@@ -55,15 +55,15 @@ pub struct Impact<const N: usize> {
     pub grazes: bool,
 }
 
-/// Follows a run. A pair of observers, nested as deep as need be, is an observer; so are an array and an `Option` of one.
+/// Observes a run. Pairs of observers (nested to any depth), arrays and `Option`s of observers are observers, too.
 pub trait Observer<const N: usize> {
-    /// Whether it looks at the motion. An observer of events alone sets this to `false`, and no segment is computed for it.
+    /// Whether it observes the motion. An observer of events alone sets this to `false`, and no segment is computed for it.
     fn watches_motion(&self) -> bool {
         true
     }
     /// A segment of the motion has been computed.
     fn segment(&mut self, _segment: &dyn Segment<N>) {}
-    /// Several segments at once. To take them one by one is always right.
+    /// Several segments at once. To process them one by one is always correct.
     #[inline(always)]
     fn path(&mut self, path: &dyn Path<N>) {
         if self.watches_motion() {
@@ -72,14 +72,14 @@ pub trait Observer<const N: usize> {
             }
         }
     }
-    /// A part of such a path.
+    /// A part of a path.
     fn see(&mut self, part: Part<'_, N>) {
         match part {
             Part::Segment(segment) => self.segment(segment),
-            Part::Seam => self.seam(),
+            Part::Discontinuity => self.discontinuity(),
         }
     }
-    /// Several whole steps of an exact flow at once. To take them one by one is always right.
+    /// Several whole steps of an exact flow at once. To process them one by one is always correct.
     #[inline(always)]
     fn steps(&mut self, steps: &Steps<'_, N>) {
         if self.watches_motion() {
@@ -88,7 +88,7 @@ pub trait Observer<const N: usize> {
             }
         }
     }
-    /// Whether it provably needs nothing of these pieces of a record: then they are not handed over.
+    /// Whether these pieces of a record provably do not affect its result: they are then not passed on.
     #[inline(always)]
     fn skips(&self, _block: &Block<N>) -> bool {
         !self.watches_motion()
@@ -97,25 +97,25 @@ pub trait Observer<const N: usize> {
     fn touch_down(&mut self, _t: f64, _side: Side) {}
     /// The damper has struck a rigid wall: between two segments the state jumps.
     fn impact(&mut self, _impact: &Impact<N>) {}
-    /// Whether it follows every piece of a contact: contacts in steps are then those of DOP853, one that loses energy is never collocated, and from
-    /// none is the fast part of a strong dashpot left out.
+    /// Whether it needs every piece of a contact: contacts in steps are then integrated by DOP853, a contact that loses energy is never
+    /// collocated, and no contact leaves out the fast part of a strong dashpot.
     fn follows_contacts(&self) -> bool {
         false
     }
-    /// The force or its slope jumps between two segments, or a fast part of the motion is left out from here on: rates before are not
-    /// those after.
-    fn seam(&mut self) {}
+    /// The force or its slope jumps between two segments, or a fast part of the motion is left out from here on: rates before and after
+    /// differ.
+    fn discontinuity(&mut self) {}
     /// Whether the run may stop here. It stops as soon as one of several observers says so.
     fn satisfied(&self) -> bool {
         false
     }
-    /// How much it has looked at, in units of some 10 ns of a processor of today.
-    fn looks(&self) -> u64 {
+    /// Its work so far, in units of some 10 ns of a current processor.
+    fn search_work(&self) -> u64 {
         0
     }
 }
 
-/// The observer that sees nothing: for the transient before a window.
+/// An observer that ignores the motion: for the transient before a window.
 pub struct Unobserved;
 
 impl<const N: usize> Observer<N> for Unobserved {
@@ -156,15 +156,15 @@ impl<const N: usize, A: Observer<N>, B: Observer<N>> Observer<N> for (A, B) {
     fn follows_contacts(&self) -> bool {
         self.0.follows_contacts() || self.1.follows_contacts()
     }
-    fn seam(&mut self) {
-        self.0.seam();
-        self.1.seam();
+    fn discontinuity(&mut self) {
+        self.0.discontinuity();
+        self.1.discontinuity();
     }
     fn satisfied(&self) -> bool {
         self.0.satisfied() || self.1.satisfied()
     }
-    fn looks(&self) -> u64 {
-        self.0.looks() + self.1.looks()
+    fn search_work(&self) -> u64 {
+        self.0.search_work() + self.1.search_work()
     }
 }
 
@@ -195,18 +195,18 @@ impl<const N: usize, O: Observer<N> + ?Sized> Observer<N> for &mut O {
     fn follows_contacts(&self) -> bool {
         (**self).follows_contacts()
     }
-    fn seam(&mut self) {
-        (**self).seam();
+    fn discontinuity(&mut self) {
+        (**self).discontinuity();
     }
     fn satisfied(&self) -> bool {
         (**self).satisfied()
     }
-    fn looks(&self) -> u64 {
-        (**self).looks()
+    fn search_work(&self) -> u64 {
+        (**self).search_work()
     }
 }
 
-/// Implements [`Observer`] for a container by handing everything on to each observer in it.
+/// Implements [`Observer`] for a container by forwarding every call to each observer in it.
 macro_rules! for_each_in {
     ($container:ty $(, const $count:ident)?) => {
         impl<const N: usize, O: Observer<N>, $(const $count: usize)?> Observer<N> for $container {
@@ -234,14 +234,14 @@ macro_rules! for_each_in {
             fn follows_contacts(&self) -> bool {
                 self.iter().any(|observer| observer.follows_contacts())
             }
-            fn seam(&mut self) {
-                self.iter_mut().for_each(Observer::seam);
+            fn discontinuity(&mut self) {
+                self.iter_mut().for_each(Observer::discontinuity);
             }
             fn satisfied(&self) -> bool {
                 self.iter().any(|observer| observer.satisfied())
             }
-            fn looks(&self) -> u64 {
-                self.iter().map(Observer::looks).sum()
+            fn search_work(&self) -> u64 {
+                self.iter().map(Observer::search_work).sum()
             }
         }
     };

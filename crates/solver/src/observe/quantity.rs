@@ -1,4 +1,4 @@
-//! The quantities that a run is watched for.
+//! The quantities that are observed in a run.
 
 use crate::motion::form::Form;
 use crate::motion::knot::Knot;
@@ -12,7 +12,7 @@ pub trait Quantity<const N: usize> {
     /// Its value with its first two time derivatives. The value itself must depend on the state alone, unless
     /// [`Self::form`] says otherwise: between the ends of a [`Path`](crate::observe::Path) it is evaluated without the force.
     fn rates(&self, excitation: Excitation, y: &[f64; N]) -> [f64; 3];
-    /// The same at moments of flight side by side, without contact forces even if rounding has left the damper inside a wall.
+    /// [`Self::rates`] at moments of flight side by side, without contact forces even if rounding has left the damper inside a wall.
     #[inline(always)]
     fn rates_in_flight(&self, excitation: &[f64x4; 2], y: &[f64x4; N]) -> [f64x4; 3] {
         let mut rates = [f64x4::ZERO; 3];
@@ -24,7 +24,7 @@ pub trait Quantity<const N: usize> {
         }
         rates
     }
-    /// The value that the state alone gives it.
+    /// The value from the state alone, without the force.
     #[inline(always)]
     fn value(&self, y: &[f64; N]) -> f64 {
         if self.is_forced() {
@@ -35,12 +35,12 @@ pub trait Quantity<const N: usize> {
     }
     /// The quantity as a polynomial in the state, from which its bounds follow.
     fn form(&self) -> &Form<N>;
-    /// Whether the value depends on the force and on contact forces, beside the state: that of a form with the rate of the state.
+    /// Whether the value depends on the force and on contact forces as well as on the state, as a form with the rate of the state does.
     #[inline(always)]
     fn is_forced(&self) -> bool {
         false
     }
-    /// The sum of the sizes of its terms, which sets its rounding error.
+    /// The sum of the magnitudes of its terms, which sets its rounding error.
     fn size(&self, y: &[f64; N]) -> f64 {
         self.form().size(y)
     }
@@ -80,7 +80,7 @@ pub struct BareEnergy<'a> {
 }
 
 impl<'a> BareEnergy<'a> {
-    /// That of a structure.
+    /// The energy of this structure.
     pub fn new(system: &'a Bare) -> Self {
         Self { system, form: Form::energy(system, system.primary_energy_weights(), [0, 1]) }
     }
@@ -103,7 +103,7 @@ pub struct PrimaryEnergy<'a> {
 }
 
 impl<'a> PrimaryEnergy<'a> {
-    /// That of a coupled system.
+    /// The energy in a coupled system.
     pub fn new(system: &'a Coupled) -> Self {
         Self { system, form: Form::energy(system, system.bare().primary_energy_weights(), [0, 1]) }
     }
@@ -130,7 +130,7 @@ pub struct DamperEnergy<'a> {
 }
 
 impl<'a> DamperEnergy<'a> {
-    /// That of a coupled system.
+    /// The energy in a coupled system.
     pub fn new(system: &'a Coupled) -> Self {
         Self { system, form: Form::energy(system, system.damper_energy_weights(), [2, 3]) }
     }
@@ -150,7 +150,7 @@ impl Quantity<4> for DamperEnergy<'_> {
     }
 }
 
-/// The damper's position relative to the structure, `r = x2 - x1` (m), or its opposite.
+/// The damper's position relative to the structure, `r = x2 - x1` (m), or its negative.
 pub struct RelativePosition<'a> {
     system: &'a Coupled,
     sign: f64,

@@ -1,8 +1,8 @@
 //! A quantity between two places where its value, slope and curvature are known, and a bound `M` on its sixth derivative.
 //!
-//! The quintic that meets the six numbers leaves the quantity by at most `R = M h⁶ / 46080`, the quintic's slope the slope by at most
-//! `√5/30000 M h⁵`, and its curvature the curvature by at most `M h⁴ / 1920` (G. Birkhoff & A. Priver, J. Math. and Phys.
-//! 46, 1967). It and its derivatives stay between the least and the largest of their Bernstein coefficients.
+//! The quintic that meets the six numbers deviates from the quantity by at most `R = M h⁶ / 46080`, its slope by at most `√5/30000 M h⁵`,
+//! and its curvature by at most `M h⁴ / 1920` (G. Birkhoff & A. Priver, J. Math. and Phys. 46, 1967). It and its derivatives stay between
+//! the least and the largest of their Bernstein coefficients.
 
 use wide::f64x4;
 
@@ -16,8 +16,8 @@ pub fn quintic(h: f64x4, a: [f64x4; 3], b: [f64x4; 3]) -> [f64x4; 6] {
     [a[0], inner_a, deep_a, deep_b, inner_b, b[0]]
 }
 
-/// An upper bound of a quantity that leaves its quintic by at most `remainder`: the error has three zeros at each end, so it is at most
-/// `64 remainder τ³ (1 - τ)³`, and `τ³ (1 - τ)³` is a twentieth of the middle Bernstein polynomial of degree six. The other
+/// An upper bound of a quantity that deviates from its quintic by at most `remainder`: the error has three zeros at each end, so it is at
+/// most `64 remainder τ³ (1 - τ)³`, and `τ³ (1 - τ)³` is a twentieth of the middle Bernstein polynomial of degree six. The other
 /// coefficients of that degree are means of these six.
 #[inline(always)]
 pub fn highest(c: [f64x4; 6], remainder: f64x4) -> f64x4 {
@@ -35,9 +35,9 @@ pub enum Shape {
     Unknown,
 }
 
-/// The shape of a quantity that leaves the quintic with these coefficients by at most `remainder`: its slope leaves the quintic's by at most
-/// `46080 √5/30000 remainder / h`, its curvature by at most `24 remainder / h²`; the coefficients of slope and curvature
-/// are 5 and 20 times the first and second differences of these.
+/// The shape of a quantity that deviates from the quintic with these coefficients by at most `remainder`: its slope deviates by at most
+/// `46080 √5/30000 remainder / h`, its curvature by at most `24 remainder / h²`; the coefficients of slope and curvature are 5 and 20 times
+/// the first and second differences of these.
 pub fn shape(c: [f64; 6], remainder: f64) -> Shape {
     let rises: [f64; 5] = std::array::from_fn(|i| c[i + 1] - c[i]);
     let bends: [f64; 4] = std::array::from_fn(|i| rises[i + 1] - rises[i]);
@@ -53,7 +53,7 @@ pub fn shape(c: [f64; 6], remainder: f64) -> Shape {
     Shape::Unknown
 }
 
-/// Where the slope is zero on a stretch of length `h` at whose ends it is positive, then negative: a root of the cubic that
+/// Where the slope is zero on a stretch of length `h`, at whose start it is positive and at whose end negative: a root of the cubic that
 /// meets slope and curvature at both ends.
 pub fn slope_root(h: f64, a: [f64; 3], b: [f64; 3]) -> f64 {
     let (c0, c1) = (a[1], h * a[2]);

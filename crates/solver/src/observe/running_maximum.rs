@@ -1,4 +1,4 @@
-//! The running maximum of a quantity: the observer that most runs are made for.
+//! The running maximum of a quantity: the observer of most runs.
 
 use super::observer::{Impact, MOST_KNOTS, Observer, Path};
 use super::quantity::{Quantity, rates_in};
@@ -21,7 +21,7 @@ pub struct RunningMaximum<Q> {
 }
 
 impl<Q> RunningMaximum<Q> {
-    /// Watches a quantity; the run may end early once its value exceeds `cutoff`.
+    /// Observes a quantity; the run may end early once its value exceeds `cutoff`.
     pub fn new(quantity: Q, cutoff: f64) -> Self {
         Self { search: Search::new(quantity), cutoff, last: None }
     }
@@ -31,10 +31,10 @@ impl<Q> RunningMaximum<Q> {
         self.search.record
     }
 
-    /// Takes over a record that is higher than its own, as that of the same quantity with the other sign.
+    /// Raises the record to a higher one, such as that of the quantity with the other sign.
     #[inline(always)]
-    pub(super) fn raise(&mut self, record: Extreme) {
-        self.search.note(record.value, record.time);
+    pub(super) fn raise_record(&mut self, record: Extreme) {
+        self.search.update_record(record.value, record.time);
     }
 
     /// By how much a value may exceed the record because a search ended before its bounds could decide; 0 where the record is proven.
@@ -55,7 +55,7 @@ impl<Q> RunningMaximum<Q> {
         block.range(value, quantity.form().second_in_flight(block.energy))[1] <= most
     }
 
-    /// [`Observer::path`] of a quantity that depends on the force; `values` are those without it.
+    /// [`Observer::path`] for a quantity that depends on the force; `values` are those without the force.
     fn forced_path<const N: usize>(&mut self, path: &dyn Path<N>, times: &[f64], values: &[f64])
     where
         Q: Quantity<N>,
@@ -72,9 +72,9 @@ impl<Q> RunningMaximum<Q> {
     }
 }
 
-/// How far a quantity may rise above the larger of two values, `t` apart, that differ by `change`, where its second derivative is at
-/// most `m` and `bend` is `m t²`: inside, where its slope is zero, it exceeds a value at the distance `s` by at most `m s² / 2`, so that both
-/// values allow `m t² / 8 (1 - 2 change / (m t²))²`, and nothing once the change leaves no room for a zero of the slope.
+/// How far a quantity may rise above the larger of two values, `t` apart, that differ by `change`, where its second derivative is at most
+/// `m` and `bend` is `m t²`: inside, where its slope is zero, it exceeds a value at the distance `s` by at most `m s² / 2`, so that both
+/// values allow `m t² / 8 (1 - 2 change / (m t²))²`, and no rise once the change leaves no room for a zero of the slope.
 fn rise_by_curvature(change: f64, bend: f64) -> f64 {
     if 2.0 * change >= bend { 0.0 } else { 0.125 * bend * (1.0 - 2.0 * change / bend).powi(2) }
 }
@@ -86,7 +86,7 @@ where
     #[inline(always)]
     fn segment(&mut self, segment: &dyn Segment<N>) {
         let energy = segment.energy();
-        if energy.is_finite() && self.search.quantity.form().most(energy) <= self.search.record.value {
+        if energy.is_finite() && self.search.quantity.form().upper_bound(energy) <= self.search.record.value {
             self.last = None;
             return;
         }
@@ -95,26 +95,26 @@ where
             Some((t, flown, rates)) if t == a.t && flown == in_flight => rates,
             _ => {
                 let rates = rates_in(segment, a, &self.search.quantity);
-                self.search.note(rates[0], a.t);
+                self.search.update_record(rates[0], a.t);
                 rates
             }
         };
         let rates_b = rates_in(segment, b, &self.search.quantity);
         self.last = Some((b.t, in_flight, rates_b));
-        self.search.note(rates_b[0], b.t);
+        self.search.update_record(rates_b[0], b.t);
         let from = (0.0, *a, in_theta(rates_a, a.clock));
         let to = (segment.length(), *b, in_theta(rates_b, b.clock));
-        // In a contact the coarse bound costs less than the other.
+        // In a contact the coarse bound costs less than the quintic.
         if self.search.coarse_bound(segment, &from, &to) <= self.search.record.value {
-            self.search.looks += segment.cost();
+            self.search.search_work += segment.cost();
             return;
         }
         let remainder = self.search.quintic_error(segment, &from, &to, false);
         self.search.begin(segment, &from, &to, remainder);
     }
 
-    /// Searches only where the record could be broken, by the values at both ends or between knots (see [`rise_by_curvature`]). A quantity
-    /// that contact forces enter has no second derivative, but a first of at most some `m`: it rises above the mean of two values `t`
+    /// Searches only where bounds from the values at both ends, or at the knots, allow a new record (see [`rise_by_curvature`]). A quantity
+    /// that depends on contact forces has no second derivative, but a first of at most some `m`: it rises above the mean of two values `t`
     /// seconds apart by at most `m t / 2`.
     #[inline(always)]
     fn path(&mut self, path: &dyn Path<N>) {
@@ -138,8 +138,8 @@ where
             return self.forced_path(path, &times[..count], &values[..count]);
         }
         let second = path.second_derivative(self.search.quantity.form());
-        // In a piece of the path the first bound is smaller by its share of the time, or more. The largest of the values is that of a piece that
-        // is shown.
+        // For a piece of the path the first bound falls at least in proportion to its duration. A piece that cannot reach the largest value
+        // at a knot is skipped: another piece has it.
         let slope = rise / times[count - 1];
         let largest = values[..count].iter().fold(f64::NEG_INFINITY, |largest, value| largest.max(*value));
         for piece in 0..count - 1 {
@@ -158,14 +158,14 @@ where
     #[inline(always)]
     fn steps(&mut self, steps: &Steps<'_, N>) {
         let (from, to) = (steps.from(), steps.ends());
-        // Pieces of a record are many: most of a run has too little energy for any of them to matter.
+        // A record has many pieces: most of a run has too little energy for any of them to matter.
         if steps.begin().is_some()
-            && self.search.quantity.form().most(steps.energy()) <= self.search.record.value
+            && self.search.quantity.form().upper_bound(steps.energy()) <= self.search.record.value
         {
             self.last = None;
             return;
         }
-        self.search.looks += steps.count() as u64;
+        self.search.search_work += steps.count() as u64;
         let ends = self.search.quantity.rates_in_flight(&to.excitation, &to.y);
         let begins = match steps.begin() {
             None => {
@@ -196,8 +196,8 @@ where
             return;
         }
         for number in 0..=last {
-            self.search.note(begins[0].to_array()[number], steps.time(number));
-            self.search.note(ends[0].to_array()[number], steps.time(number + 1));
+            self.search.update_record(begins[0].to_array()[number], steps.time(number));
+            self.search.update_record(ends[0].to_array()[number], steps.time(number + 1));
         }
         for number in (0..=last).filter(|number| wanted >> number & 1 == 1) {
             let step = steps.step(number);
@@ -213,15 +213,15 @@ where
         self.stays_below(block, self.search.record.value)
     }
 
-    /// The rates before a jump are not those after it.
+    /// The rates jump, too.
     fn impact(&mut self, impact: &Impact<N>) {
         self.last = None;
-        // The next segment may be none that is searched: the value counts all the same.
+        // The next segment may not be searched, but the value after the impact counts.
         let rates = impact.after.rates(&self.search.quantity, !impact.caught);
-        self.search.note(rates[0], impact.after.t);
+        self.search.update_record(rates[0], impact.after.t);
     }
 
-    fn seam(&mut self) {
+    fn discontinuity(&mut self) {
         self.last = None;
     }
 
@@ -229,8 +229,8 @@ where
         self.search.record.value > self.cutoff
     }
 
-    fn looks(&self) -> u64 {
-        self.search.looks
+    fn search_work(&self) -> u64 {
+        self.search.search_work
     }
 }
 

@@ -18,33 +18,33 @@ pub struct Search<Q> {
     pub record: Extreme,
     /// Halvings left in the segment that is searched.
     halvings: u32,
-    /// Whether its sharp bound is in use.
+    /// Whether the sharp bound is in use in this segment.
     sharp: bool,
     /// A bound on the largest value where a search ended before its bounds could decide.
     undecided: f64,
-    /// What has been looked at, see [`Observer::looks`](super::observer::Observer::looks).
-    pub looks: u64,
+    /// The work so far, see [`Observer::search_work`](super::observer::Observer::search_work).
+    pub search_work: u64,
 }
 
 /// An assumption for motions without a known bound (the interpolants of general methods): `R` relative to the variation at both ends,
-/// `h |slope| + h² |curvature|`. A quantity that oscillates at the rate `2/h` leaves its quintic by `2⁶ / 46080 = 1.4e-3` of its
+/// `h |slope| + h² |curvature|`. A quantity that oscillates at the rate `2/h` deviates from its quintic by `2⁶ / 46080 = 1.4e-3` of its
 /// amplitude.
 const ASSUMED: f64 = 2e-3;
 
-/// Rounding error of a value, relative to `ε` times the sizes of its terms: the search ignores smaller gains.
+/// Rounding error of a value, relative to `ε` times the magnitudes of its terms: the search ignores smaller gains.
 const ROUNDING: f64 = 8.0;
 
-/// Most halvings in a segment. Two or three are common, and 20 are many; they would not end only where parameters are so many
-/// orders of magnitude apart that slopes are lost in rounding.
+/// Limit on halvings in a segment. Two or three are common, and 20 are many; only where parameters are so many orders of magnitude
+/// apart that slopes are lost in rounding would the search not end.
 const HALVINGS: u32 = 64;
 
-/// What the bounds of a segment count, a sharp bound, and a moment inside a segment, which is reached by a step of its own in a contact.
-const SEGMENT: u64 = 2;
-const BOUND: u64 = 24;
-const MOMENT: u64 = 40;
+/// Work for the bounds of a segment, for a sharp bound, and for a moment inside a segment, which takes a separate step in a contact.
+const SEGMENT_WORK: u64 = 2;
+const SHARP_BOUND_WORK: u64 = 24;
+const EVALUATION_WORK: u64 = 40;
 
-/// Halvings after which a search asks for the sharp bound.
-const SHARP: u32 = 3;
+/// Halvings after which a search uses the sharp bound.
+const SHARP_AFTER: u32 = 3;
 
 impl<Q> Search<Q> {
     /// A search that has seen nothing.
@@ -55,12 +55,12 @@ impl<Q> Search<Q> {
             halvings: 0,
             sharp: false,
             undecided: f64::NEG_INFINITY,
-            looks: 0,
+            search_work: 0,
         }
     }
 
-    /// By how much a value may exceed the record because a search ended before its bounds could decide; 0 where the record is
-    /// proven. The rest of such a search is climbed where its slopes show a maximum.
+    /// By how much a value may exceed the record because a search ended before its bounds could decide; 0 where the record is proven. In
+    /// the undecided rest a maximum is still located where the slopes show one.
     pub fn doubt(&self) -> f64 {
         (self.undecided - self.record.value).max(0.0)
     }
@@ -75,20 +75,21 @@ pub fn in_theta([value, slope, curvature]: [f64; 3], [rate, rate_slope]: [f64; 2
 /// A place in a segment: `θ`, the moment, and `[value, slope, curvature]` there.
 pub type Place<const N: usize> = (f64, Knot<N>, [f64; 3]);
 
-/// Whether some half of the room above the lower of both ends is that of the remainder, of which a bound contains 64/20 (see `highest`).
-fn says_little<const N: usize>(remainder: f64, highest: f64, a: &Place<N>, b: &Place<N>) -> bool {
+/// Whether the remainder makes up 40 % or more of the height of the bound above the lower of both ends: the bound contains 64/20 of it (see
+/// `highest`).
+fn is_loose<const N: usize>(remainder: f64, highest: f64, a: &Place<N>, b: &Place<N>) -> bool {
     remainder >= 0.125 * (highest - a.2[0].min(b.2[0]))
 }
 
 impl<Q> Search<Q> {
-    /// Looks from now on for values above this one.
+    /// Restarts the search for values above this one.
     pub fn restart(&mut self, record: Extreme) {
         (self.record, self.undecided) = (record, f64::NEG_INFINITY);
     }
 
     /// Keeps a value if it is the largest so far.
     #[inline]
-    pub fn note(&mut self, value: f64, time: f64) {
+    pub fn update_record(&mut self, value: f64, time: f64) {
         if value > self.record.value {
             self.record = Extreme { value, time };
         }
@@ -105,7 +106,7 @@ impl<Q> Search<Q> {
         Q: Quantity<N>,
     {
         (self.halvings, self.sharp) = (HALVINGS, false);
-        self.looks += SEGMENT * segment.cost();
+        self.search_work += SEGMENT_WORK * segment.cost();
         self.search(segment, a, b, remainder);
     }
 
@@ -118,7 +119,7 @@ impl<Q> Search<Q> {
         a.2[0].max(b.2[0]) + segment.rise(form, [&a.1, &b.1], slopes, b.0 - a.0)
     }
 
-    /// Looks for a maximum above the record between two places. `remainder` bounds how far the quantity leaves its quintic there.
+    /// Searches for a maximum above the record between two places. `remainder` bounds the deviation of the quantity from its quintic there.
     fn search<const N: usize>(&mut self, segment: &dyn Segment<N>, a: &Place<N>, b: &Place<N>, remainder: f64)
     where
         Q: Quantity<N>,
@@ -129,7 +130,7 @@ impl<Q> Search<Q> {
         } else {
             f64::INFINITY
         };
-        if says_little(remainder, highest, a, b) {
+        if is_loose(remainder, highest, a, b) {
             highest = highest.min(self.coarse_bound(segment, a, b));
         }
         // A bound that is NaN drops nothing.
@@ -138,14 +139,14 @@ impl<Q> Search<Q> {
         }
         match shape(coefficients.map(|lanes| lanes.to_array()[0]), remainder) {
             Shape::EndsAreLargest => {} // and have been noted
-            Shape::OneMaximum => self.climb(segment, a, b),
-            Shape::Unknown => self.halve(segment, a, b, remainder, highest),
+            Shape::OneMaximum => self.refine_maximum(segment, a, b),
+            Shape::Unknown => self.bisect(segment, a, b, remainder, highest),
         }
     }
 
-    /// Searches both halves of a stretch on which no value exceeds `highest`. A half has a 64th of the remainder; a long search asks for
-    /// a sharper one first.
-    fn halve<const N: usize>(
+    /// Searches both halves of a stretch on which no value exceeds `highest`. A half has a 64th of the remainder; a long search first
+    /// computes a sharper one.
+    fn bisect<const N: usize>(
         &mut self,
         segment: &dyn Segment<N>,
         a: &Place<N>,
@@ -155,7 +156,7 @@ impl<Q> Search<Q> {
     ) where
         Q: Quantity<N>,
     {
-        if self.halvings <= HALVINGS - SHARP {
+        if self.halvings <= HALVINGS - SHARP_AFTER {
             let size = self.quantity.size(&a.1.y).max(self.quantity.size(&b.1.y));
             let rounding = ROUNDING * f64::EPSILON * size;
             if highest <= self.record.value + rounding {
@@ -164,14 +165,14 @@ impl<Q> Search<Q> {
             if self.halvings == 0 {
                 self.undecided = self.undecided.max(highest);
                 if a.2[1] > 0.0 && b.2[1] < 0.0 {
-                    self.climb(segment, a, b);
+                    self.refine_maximum(segment, a, b);
                 }
                 return;
             }
-            // As often as that of this stretch says little.
-            if !self.sharp || says_little(remainder, highest, a, b) {
+            // Repeated wherever the bound of this stretch is loose.
+            if !self.sharp || is_loose(remainder, highest, a, b) {
                 self.sharp = true;
-                self.looks += BOUND * segment.cost();
+                self.search_work += SHARP_BOUND_WORK * segment.cost();
                 let sharper = self.quintic_error(segment, a, b, true);
                 if sharper < remainder {
                     return self.search(segment, a, b, sharper);
@@ -180,23 +181,23 @@ impl<Q> Search<Q> {
         }
         self.halvings -= 1;
         remainder /= 64.0;
-        let middle = self.look(segment, 0.5 * (a.0 + b.0));
-        self.note(middle.2[0], middle.1.t);
+        let middle = self.evaluate_at(segment, 0.5 * (a.0 + b.0));
+        self.update_record(middle.2[0], middle.1.t);
         for (from, to) in [(a, &middle), (&middle, b)] {
             self.search(segment, from, to, remainder);
         }
     }
 
-    fn look<const N: usize>(&mut self, segment: &dyn Segment<N>, theta: f64) -> Place<N>
+    fn evaluate_at<const N: usize>(&mut self, segment: &dyn Segment<N>, theta: f64) -> Place<N>
     where
         Q: Quantity<N>,
     {
-        self.looks += MOMENT * segment.cost();
+        self.search_work += EVALUATION_WORK * segment.cost();
         let knot = segment.at(theta);
         (theta, knot, in_theta(rates_in(segment, &knot, &self.quantity), knot.clock))
     }
 
-    /// A bound on how far the quantity leaves its quintic between two places.
+    /// A bound on the deviation of the quantity from its quintic between two places.
     pub fn quintic_error<const N: usize>(
         &self,
         segment: &dyn Segment<N>,
@@ -217,10 +218,10 @@ impl<Q> Search<Q> {
         if error.is_nan() { f64::INFINITY } else { error }
     }
 
-    /// The only maximum between two places, where the quantity is concave: Newton's method on the slope, kept inside by bisection.
-    /// The quantity is flat there: an error δ of the place costs δ², which the parabola corrects by `slope² / 2|curvature|`, so that
-    /// an error of order δ³ is left.
-    fn climb<const N: usize>(&mut self, segment: &dyn Segment<N>, a: &Place<N>, b: &Place<N>)
+    /// The only maximum between two places, where the quantity is concave: Newton's method on the slope, safeguarded by bisection. The
+    /// quantity is flat there: an error δ of the place costs δ², which the parabola corrects by `slope² / 2|curvature|`, so that an error
+    /// of order δ³ is left.
+    fn refine_maximum<const N: usize>(&mut self, segment: &dyn Segment<N>, a: &Place<N>, b: &Place<N>)
     where
         Q: Quantity<N>,
     {
@@ -228,8 +229,8 @@ impl<Q> Search<Q> {
         let mut theta = a.0 + slope_root(b.0 - a.0, a.2, b.2);
         for _ in 0..60 {
             let (_, Knot { t, clock: [rate, rate_slope], .. }, [value, slope, curvature]) =
-                self.look(segment, theta);
-            self.note(value, t);
+                self.evaluate_at(segment, theta);
+            self.update_record(value, t);
             if slope > 0.0 {
                 lower = theta
             } else {
@@ -240,7 +241,7 @@ impl<Q> Search<Q> {
             if curvature < 0.0 && gain <= 1e-10 * value.abs() {
                 // Where the quantity is almost level, the vertex of the parabola may lie far outside the bracket.
                 let way = step.max(lower - theta).min(upper - theta);
-                return self.note(value + gain, t + way * (rate + 0.5 * way * rate_slope));
+                return self.update_record(value + gain, t + way * (rate + 0.5 * way * rate_slope));
             }
             let newton = theta + step;
             theta = if newton > lower && newton < upper { newton } else { 0.5 * (lower + upper) };

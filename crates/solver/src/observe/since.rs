@@ -1,4 +1,4 @@
-//! An observer that looks from a time on.
+//! An observer of the motion from a time on.
 
 use super::observer::{Impact, Observer, Path};
 use crate::linear::pieces::Block;
@@ -10,7 +10,7 @@ use retune_model::Side;
 
 /// An observer of a part of a run: from a time on, inside a segment if need be.
 pub struct Since<O> {
-    /// What it hands the motion to.
+    /// The observer of that part of the run.
     pub observer: O,
     from: f64,
     /// Whether that time has passed.
@@ -65,11 +65,11 @@ impl<O: Observer<4>> Observer<4> for Since<O> {
             self.observer.impact(impact);
         }
     }
-    fn seam(&mut self) {
-        self.observer.seam();
+    fn discontinuity(&mut self) {
+        self.observer.discontinuity();
     }
-    fn looks(&self) -> u64 {
-        self.observer.looks()
+    fn search_work(&self) -> u64 {
+        self.observer.search_work()
     }
 }
 

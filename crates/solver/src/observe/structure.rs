@@ -10,17 +10,17 @@ use wide::f64x4;
 pub trait Structure<const N: usize>: LinearSystem<N> {
     /// `[x1, v1, a1, da1/dt, d²a1/dt²]`, in m, m/s, …
     fn motion(&self, excitation: Excitation, y: &[f64; N]) -> [f64; 5];
-    /// The same at moments of flight side by side.
+    /// [`Self::motion`] at moments of flight side by side.
     fn motion_in_flight(&self, excitation: &[f64x4; 2], y: &[f64x4; N]) -> [f64x4; 5];
     /// `[k1, c1]`: the weights of `x1` and `v1` in the force on the ground.
     fn ground_force_weights(&self) -> [f64; 2];
-    /// Whether the base moves in coordinates that do not: the force that the structure feels goes through the ground.
+    /// Whether the base moves in fixed coordinates: the force on the structure then acts through the ground.
     fn through_ground(&self) -> bool {
         self.structure().is_on_moving_base()
     }
     /// The weights of the rates of the state in the sum of the bodies' inertia forces, kg.
     fn masses(&self) -> [f64; N];
-    /// What contact forces add to the sizes of the terms of `a1`, m/s².
+    /// What contact forces add to the magnitudes of the terms of `a1`, m/s².
     fn contact_size(&self, _y: &[f64; N]) -> f64 {
         0.0
     }
@@ -66,7 +66,7 @@ impl Structure<4> for Coupled {
 pub struct StructureMotion<'a, S, const N: usize> {
     system: &'a S,
     weights: [f64; 3],
-    /// The weight of the force, and how it turns, rad/s.
+    /// The weight of the force, and the rates of its rotation as in `Bare::turning`, rad/s.
     force: [f64; 3],
     form: Form<N>,
 }
@@ -92,16 +92,16 @@ impl<'a, S: Structure<N>, const N: usize> StructureMotion<'a, S, N> {
         Self::new(system, [0.0, sign, 0.0])
     }
 
-    /// `sign a1`, m/s². In coordinates that move with an accelerated base it is that of the structure all the same: the acceleration there less
-    /// `f/m1`, which is that of the base with the other sign.
+    /// `sign a1`, m/s². In coordinates that move with an accelerated base it is still the absolute acceleration: the one relative to the
+    /// base less `f/m1`, which is minus that of the base.
     pub fn acceleration(system: &'a S, sign: f64) -> Self {
-        let own = Self::new(system, [0.0, 0.0, sign]);
+        let in_base_frame = Self::new(system, [0.0, 0.0, sign]);
         if !system.structure().moves_with_base() {
-            return own;
+            return in_base_frame;
         }
         let [omega, returns] = system.structure().turning();
-        let form = own.form.unforced(system);
-        Self { force: [-sign / system.structure().mass(), omega, returns], form, ..own }
+        let form = in_base_frame.form.unforced(system);
+        Self { force: [-sign / system.structure().mass(), omega, returns], form, ..in_base_frame }
     }
 
     /// `sign` times the force on the ground, N: `k1 x1 + c1 v1`, and where the ground moves less the force that it exerts on the
@@ -119,7 +119,7 @@ impl<'a, S: Structure<N>, const N: usize> StructureMotion<'a, S, N> {
 }
 
 impl<S, const N: usize> StructureMotion<'_, S, N> {
-    /// The part of the force, with its first two time derivatives.
+    /// The contribution of the force, with its first two time derivatives.
     #[inline(always)]
     fn force_rates<T>(&self, [cos, sin]: [T; 2]) -> [T; 3]
     where

@@ -1,6 +1,6 @@
-//! Extrapolation: where a run will be when the window begins, told from afar by the periodic motion that it converges to.
+//! Extrapolation: predicts where a run will be when the window begins, from the periodic motion to which it converges.
 
-use super::limit::{Limit, NEGLECTED, Question, limit};
+use super::limit::{Limit, LimitOptions, NEGLECTED, limit};
 use super::test::{Recurrence, Settle};
 use crate::hybrid::propagator::{Hybrid, Motion, Phase};
 use crate::observe::observer::Unobserved;
@@ -8,22 +8,22 @@ use crate::settings::{Settings, Window};
 use retune_model::Coupled;
 use std::f64::consts::TAU;
 
-/// Share of a state by which it differs from an earlier one at most at the first attempt, and the factor to that for the next one.
+/// Largest relative change of a state from an earlier one for the first attempt, and the factor on it for the next one.
 const CLOSE: f64 = 1e-3;
 const CLOSER: f64 = 0.1;
-/// The longest motion that is sought, in periods of the force. An attempt takes seven or eight such motions.
+/// The longest period that is sought, in periods of the force. An attempt follows seven or eight such periods of the motion.
 const PERIODS: usize = 2;
-/// The number of these motions that must be left before the window so that it pays.
+/// The number of periods of the motion that must be left before the window for an attempt to pay.
 const WORTH: u32 = 12;
-/// The loosest tolerance at which it does.
+/// The loosest tolerance at which an attempt pays.
 const LOOSEST: f64 = 1e-7;
 
-/// Tells where a run will be at the start of a window.
+/// Predicts where a run will be at the start of a window.
 pub struct Extrapolation<'a> {
     system: &'a Coupled,
     window: Window,
     settings: Settings,
-    /// Share of a state by which it differs from an earlier one at most for the next attempt.
+    /// Largest relative change of a state from an earlier one for the next attempt.
     pub close: f64,
 }
 
@@ -32,19 +32,19 @@ pub struct Extrapolation<'a> {
 pub struct Converging {
     /// A moment of the run less than a few periods before the start of the window.
     pub late: Motion,
-    /// The time, s, from which on it repeats what the window has seen by then; at most the end of the window.
+    /// The time, s, from which on the run only repeats what has been observed in the window; at most the end of the window.
     pub repeats: f64,
 }
 
 impl<'a> Extrapolation<'a> {
-    /// For a run to a window; `None` if its tolerance is so loose that it is less work to wait.
+    /// For a run to a window; `None` at tolerances so loose that following the run is less work.
     pub fn new(system: &'a Coupled, window: Window, settings: &Settings) -> Option<Self> {
         (settings.rtol <= LOOSEST).then_some(Self { system, window, settings: *settings, close: CLOSE })
     }
 
-    /// Where a run will be that has these states at whole periods of the force, the last at `t` (s), and returns closely after some periods;
-    /// `None` if that cannot be told, or if it is not worth the work.
-    pub fn converges(&mut self, t: f64, states: &[[f64; 4]], periods: usize) -> Option<Converging> {
+    /// Predicts a run that has these states at whole periods of the force, the last at `t` (s), and nearly repeats after `periods` of them;
+    /// `None` if that is impossible or not worth the work.
+    pub fn extrapolate(&mut self, t: f64, states: &[[f64; 4]], periods: usize) -> Option<Converging> {
         let Self { system, window, ref settings, .. } = *self;
         let omega = system.bare().frequency();
         let span = periods as f64 * TAU / omega;
@@ -53,12 +53,13 @@ impl<'a> Extrapolation<'a> {
         if periods > PERIODS || counts[0] < WORTH || last < 2 * periods {
             return None;
         }
-        let test = Recurrence::to_the_end(system, Settle::default());
+        let test = Recurrence::exhaustive(system, Settle::default());
         let size = test.size(&states[last + 1 - periods..]);
         let change = |i: usize| test.change(&states[i], &states[i - periods], size);
         let returns = last / periods - 1;
         let fall = (change(last) / change(last - returns * periods)).powf(1.0 / returns as f64);
-        // Of what will be left, judged by how the changes have fallen so far, each map may be wrong by the root of the tolerance.
+        // Each map may be wrong by the root of the tolerance, relative to the transient that will be left, which is extrapolated from the
+        // decay of the changes so far.
         let left = change(last) * fall.powi(counts[0] as i32);
         if f64::from(counts[0]) * left > NEGLECTED * settings.rtol.sqrt() {
             return None;
@@ -67,17 +68,17 @@ impl<'a> Extrapolation<'a> {
         let now = states[last];
         let rates = [omega, 1.0, omega, 1.0];
         let speed = now.iter().zip(rates).map(|(y, rate)| rate * y.abs()).fold(0.0, f64::max);
-        let question = Question {
+        let options = LimitOptions {
             counts,
             share: |change: &[f64; 4]| test.change(change, &[0.0; 4], size),
             tolerance: settings.rtol,
             scales: rates.map(|rate| speed / rate),
         };
-        // One of its own: the run that is observed goes on as if nobody looked ahead.
+        // A separate propagator, so that the extrapolation does not affect the observed run.
         let mut hybrid = Hybrid::new(system, settings.rtol, span, settings.max_steps);
         let moment = |t: f64, y: [f64; 4]| Motion { t, y, phase: Phase::of(system, &y) };
         let map = |y| hybrid.propagate(moment(t, y), t + span, &mut Unobserved).ok().map(|end| end.y);
-        let Limit { state, left, more } = limit(map, now, &question)?;
+        let Limit { state, left, more } = limit(map, now, &options)?;
         let late = moment(t + f64::from(counts[0]) * span, std::array::from_fn(|i| state[i] + left[i]));
         Some(Converging { late, repeats: window.to.min(window.from + f64::from(more + 1) * span) })
     }

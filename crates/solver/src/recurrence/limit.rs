@@ -1,10 +1,10 @@
-//! The periodic motion that a run converges to, and how far from it the run will be many periods later.
+//! The periodic motion to which a run converges, and the distance of the run from it many periods later.
 //!
-//! Near a periodic motion the map from one period to the next is linear: it multiplies what is left of a transient by the monodromy matrix
-//! `M`. So Newton's iteration finds the motion from a state close to it, and a power of `M` what will be left. Both neglect the square of
-//! what is left now, and `M`, from differences, is known to about the root of the tolerance only. Neither is taken on trust: the iteration
-//! goes on, with the same matrix, until the state stands still; a period that was followed shows what linear prediction misses; and where the
-//! power of `M` does not shrink every difference, the motion may not be a stable one.
+//! Near a periodic motion the map from one period to the next is linear: it multiplies the remaining transient by the monodromy matrix `M`.
+//! So Newton's iteration finds the motion from a state close to it, and a power of `M` gives the transient that will be left. Both neglect
+//! the square of the present transient, and `M`, from finite differences, is accurate only to about the root of the tolerance. Both are
+//! therefore checked: the iteration continues with the same matrix until the state converges; a period that was followed gives the error of
+//! the linear prediction; and the motion is taken as stable only if the power of `M` shrinks every difference.
 //!
 //! `retune-dynamics` solves the same equation for orbits that may be unstable, along a parameter, with exact derivatives over several
 //! segments (`periodic::shooting`). Inside a run that costs more than it saves: here one matrix serves all iterations, and none is made where
@@ -12,9 +12,9 @@
 
 use nalgebra::{Matrix4, Vector4};
 
-/// Most iterations after the first.
+/// Limit on iterations after the first.
 const ITERATIONS: usize = 4;
-/// An iteration changes the state by at most this share of what the one before it did; the power of `M` has at most this norm.
+/// Largest ratio of the changes in successive iterations, and largest norm of the power of `M`.
 const SHRINKS: f64 = 0.1;
 /// What may be neglected, as a share of the tolerance.
 pub const NEGLECTED: f64 = 0.1;
@@ -24,17 +24,17 @@ pub const NEGLECTED: f64 = 0.1;
 pub struct Limit {
     /// State of the periodic motion.
     pub state: [f64; 4],
-    /// By how much the state of the run differs from it after as many maps as were asked for.
+    /// The difference of the run from it after the requested number of maps.
     pub left: [f64; 4],
-    /// After how many maps more that can be neglected; at most as many as were asked for.
+    /// The number of further maps after which that difference can be neglected, at most the second of [`LimitOptions::counts`].
     pub more: u32,
 }
 
-/// What is to be known, and how closely.
-pub struct Question<F: Fn(&[f64; 4]) -> f64> {
-    /// The number of maps after which the run is asked for, and the most for which it is then followed.
+/// What [`limit`] is to predict, and how accurately.
+pub struct LimitOptions<F: Fn(&[f64; 4]) -> f64> {
+    /// The number of maps after which the state is predicted, and the most for which the run is then followed.
     pub counts: [u32; 2],
-    /// The size of a change of the state, as a share of that of the motion.
+    /// The size of a change of the state, relative to that of the motion.
     pub share: F,
     /// Tolerance on such shares.
     pub tolerance: f64,
@@ -42,22 +42,22 @@ pub struct Question<F: Fn(&[f64; 4]) -> f64> {
     pub scales: [f64; 4],
 }
 
-/// The stable fixed point of `map` to which its powers lead from `now`; `None` if that, or what will be left, cannot be told. Takes six maps
-/// and one more for each iteration after the first.
+/// The stable fixed point to which iterates of `map` converge from `now`; `None` if it, or the transient that will be left, cannot be
+/// determined. Takes six maps and one more for each iteration after the first.
 pub fn limit(
     mut map: impl FnMut([f64; 4]) -> Option<[f64; 4]>,
     now: [f64; 4],
-    question: &Question<impl Fn(&[f64; 4]) -> f64>,
+    options: &LimitOptions<impl Fn(&[f64; 4]) -> f64>,
 ) -> Option<Limit> {
-    let Question { counts: [count, most], tolerance, scales, .. } = question;
-    let share = |change: Vector4<f64>| (question.share)(&change.into());
+    let LimitOptions { counts: [count, most], tolerance, scales, .. } = options;
+    let share = |change: Vector4<f64>| (options.share)(&change.into());
     let may_be_neglected = |change: Vector4<f64>| share(change) <= NEGLECTED * tolerance;
     let after = Vector4::from(map(now)?);
     let mut monodromy = Matrix4::zeros();
     for (i, scale) in scales.iter().enumerate() {
-        let (mut moved, step) = (now, tolerance.sqrt() * scale);
-        moved[i] += step;
-        monodromy.set_column(i, &((Vector4::from(map(moved)?) - after) / step));
+        let (mut perturbed, step) = (now, tolerance.sqrt() * scale);
+        perturbed[i] += step;
+        monodromy.set_column(i, &((Vector4::from(map(perturbed)?) - after) / step));
     }
     let power = monodromy.pow(count.saturating_sub(1));
     let units = Matrix4::from_diagonal(&Vector4::from(*scales));
@@ -75,15 +75,15 @@ pub fn limit(
         state += next;
         change = next;
         if may_be_neglected(change) {
-            let missed = after - state - monodromy * (now - state);
+            let prediction_error = after - state - monodromy * (now - state);
             let left = power * monodromy * (now - state);
             let (mut later, mut more) = (left, 0);
             while more < *most && !may_be_neglected(later) {
                 later = monodromy * later;
                 more += 1;
             }
-            let is_told = may_be_neglected(power * missed * f64::from(*count));
-            return is_told.then(|| Limit { state: state.into(), left: left.into(), more });
+            let is_accurate = may_be_neglected(power * prediction_error * f64::from(*count));
+            return is_accurate.then(|| Limit { state: state.into(), left: left.into(), more });
         }
     }
     None
@@ -98,20 +98,25 @@ mod tests {
         move |y| {
             let [a, b, c, d]: [f64; 4] = std::array::from_fn(|i| y[i] - FIXED[i]);
             let [one, two, turned] = multipliers;
-            let bent = curvature * (a * a + c * d);
-            [1.0 + one * a + 0.3 * b + bent, two * b - 2.0, 3.0 + turned * d - bent, 0.5 - turned * c + bent]
+            let curved = curvature * (a * a + c * d);
+            [
+                1.0 + one * a + 0.3 * b + curved,
+                two * b - 2.0,
+                3.0 + turned * d - curved,
+                0.5 - turned * c + curved,
+            ]
         }
     }
 
     const FIXED: [f64; 4] = [1.0, -2.0, 3.0, 0.5];
 
-    fn question(count: u32) -> Question<impl Fn(&[f64; 4]) -> f64> {
+    fn options(count: u32) -> LimitOptions<impl Fn(&[f64; 4]) -> f64> {
         let share = |change: &[f64; 4]| change.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
-        Question { counts: [count, 50], share, tolerance: 1e-9, scales: [3.0; 4] }
+        LimitOptions { counts: [count, 50], share, tolerance: 1e-9, scales: [3.0; 4] }
     }
 
     fn found(map: impl Fn([f64; 4]) -> [f64; 4], count: u32) -> Option<Limit> {
-        limit(|y| Some(map(y)), [1.001, -2.002, 3.001, 0.499], &question(count))
+        limit(|y| Some(map(y)), [1.001, -2.002, 3.001, 0.499], &options(count))
     }
 
     #[test]
@@ -143,6 +148,6 @@ mod tests {
         assert_eq!(found(map([0.9, -0.5, 0.4], 5.0), 25), None, "what is left cannot be told");
         assert_eq!(found(|y| y, 25), None, "any state is one of its own");
         assert_eq!(found(|_| [f64::NAN; 4], 25), None);
-        assert_eq!(limit(|_| None, FIXED, &question(25)), None, "a map that fails");
+        assert_eq!(limit(|_| None, FIXED, &options(25)), None, "a map that fails");
     }
 }

@@ -5,7 +5,7 @@ use crate::motion::segment::Segment;
 use crate::observe::observer::{Observer, Part, Path};
 use std::collections::VecDeque;
 
-/// Whole periods of the force, as they pass.
+/// Counts whole periods of the force.
 pub struct Periods {
     period: f64,
     /// Periods that have passed.
@@ -13,27 +13,25 @@ pub struct Periods {
 }
 
 impl Periods {
-    /// Of this length, s.
     pub fn of(period: f64) -> Self {
         Self { period, count: 0.0 }
     }
 
-    /// The next time at which one has passed, s.
+    /// The end of the next period, s.
     fn next(&self) -> f64 {
         (self.count + 1.0) * self.period
     }
 
-    /// Whether one has passed at a time, s.
-    pub fn pass_by(&self, t: f64) -> bool {
+    /// Whether the next period has ended at a time, s.
+    pub fn is_due_by(&self, t: f64) -> bool {
         self.next() <= t
     }
 
-    /// Lets some pass unseen.
     pub fn skip(&mut self, periods: usize) {
         self.count += periods as f64;
     }
 
-    /// The states at those that pass in a segment; returns when the latest has passed, s.
+    /// Passes the states at the ends of the periods in a segment to `keep`; returns the end of the latest period, s.
     pub fn states(&mut self, segment: &dyn Segment<4>, mut keep: impl FnMut([f64; 4])) -> f64 {
         let [begin, end] = segment.ends();
         while self.next() <= end.t {
@@ -61,7 +59,6 @@ impl PoincareSection {
         Self { periods: Periods::of(period), most, states: VecDeque::new() }
     }
 
-    /// The latest states.
     pub fn states(&mut self) -> &[[f64; 4]] {
         self.states.make_contiguous()
     }
@@ -85,12 +82,12 @@ impl Observer<4> for PoincareSection {
                 end = segment.ends()[1].t;
             }
         });
-        if self.periods.pass_by(end) {
+        if self.periods.is_due_by(end) {
             (0..path.pieces()).for_each(|piece| path.show(piece, &mut |part| self.see(part)));
         }
     }
     fn steps(&mut self, steps: &Steps<'_, 4>) {
-        if self.periods.pass_by(steps.time(steps.count())) {
+        if self.periods.is_due_by(steps.time(steps.count())) {
             (0..steps.count()).for_each(|number| self.segment(&steps.step(number)));
         }
     }

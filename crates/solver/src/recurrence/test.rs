@@ -35,26 +35,27 @@ impl Default for Settle {
     }
 }
 
-/// Returns over which a change is summed at most.
+/// Limit on returns over which a change is summed.
 const SLOWEST: f64 = 1e3;
 
-/// The test whether states return: the one by which a run may stop.
+/// The test whether states return, by which a run may stop.
 ///
-/// It is a proof. What is left of a run is not made, so all changes to come must be small, extrapolated from how they fall. Runs that end when
-/// they repeat and settled responses ask it. `retune-dynamics` asks something else of motions that have been followed: of what kind one is
-/// (`regime`), whether two are one (`attractor`), which orbit Newton's iteration is to begin from (`periodic::settle`). That is a
-/// classification: a motion that still drifts towards its orbit is of that orbit's kind, the least number of periods matters, and distances
-/// weigh both bodies by their energy (`record::coordinates`). A limit that suits the one is wrong for the other, so that there are two.
+/// It must prove recurrence: the rest of the run is not computed, so all future changes, extrapolated from their decay, must be small. Runs
+/// that end when they repeat, and settled responses, use it. `retune-dynamics` has another test for motions that have been followed: of
+/// what kind one is (`regime`), whether two are the same (`attractor`), from which orbit Newton's iteration is to begin
+/// (`periodic::settle`). That is a classification: a motion that still drifts towards its orbit is of that orbit's kind, the least number
+/// of periods matters, and distances weight both bodies by their energy (`record::coordinates`). A tolerance that suits one test is wrong
+/// for the other, so there are two.
 pub struct Recurrence<'a> {
     system: &'a Coupled,
     settle: Settle,
-    /// The number of returns over which a change is summed at most, however slowly it falls.
+    /// The largest number of returns over which a change is summed, however slowly it falls.
     most_returns: f64,
 }
 
 impl<'a> Recurrence<'a> {
-    /// A test by `settle` that sums all changes to come, however small they are: for tolerances as tight as the solver's own.
-    pub fn to_the_end(system: &'a Coupled, settle: Settle) -> Self {
+    /// A test by `settle` that sums all future changes, however small they are: for tolerances as tight as the solver's own.
+    pub fn exhaustive(system: &'a Coupled, settle: Settle) -> Self {
         Self { system, settle, most_returns: SLOWEST }
     }
 

@@ -1,4 +1,4 @@
-//! Settled motions: a run is followed until its state returns after some periods of the force, with only a small drift left.
+//! Settled motions: a run is followed until its state recurs after some periods of the force, with only a small drift left.
 //!
 //! Read [`settled`], then `blocks`: the run in blocks of some periods. `crate::recurrence` says whether its states return.
 
@@ -17,16 +17,16 @@ use crate::settings::{Settings, Window};
 use blocks::Blocks;
 use retune_model::{Bare, Coupled, PerMeasure, Scene, Steady};
 
-/// The largest value of [`Ask::measure`] once the motion has settled: over the last of the first blocks, counted from t = 0, that agree as `settle`
-/// says. A scene whose damper provably stays off both walls is answered in closed form.
+/// The largest value of [`Ask::measure`] once the motion has settled: over the last of the first blocks, counted from t = 0, that agree as
+/// `settle` says. A scene whose damper provably stays off both walls is computed in closed form.
 ///
-/// What is asked for beside is the largest from the block that contains the time of [`Ask::also`] on; that of the settled motion always
-/// counts.
+/// The additional values are the largest from the block that contains the time of [`Ask::also`] on; those of the settled motion always
+/// count.
 ///
 /// [`Extremes::settled`] is false for a motion that has not settled by the end of `window`; its value is then that of all blocks
 /// that begin in the window (of the last block, if none does).
 ///
-/// [`Ask::cutoff`] is not used: a motion may leave a large value behind and settle at a small one.
+/// [`Ask::cutoff`] is not used: a motion may have a large value in its transient and settle at a small one.
 ///
 /// # Errors
 /// [`SolverError`] with the time reached.
@@ -69,7 +69,7 @@ pub fn settled(
     let mut blocks = Blocks::new(&system, window.from, settle, settings, ask);
     let whole = Window { from: 0.0, ..window };
     system.follow(plan, whole, settings, &mut Unobserved, &mut blocks)?;
-    let seen = blocks.verdict();
-    let largest = energy_bound::largest(scene, whole, settings, ask.measure, seen.largest)?;
+    let seen = blocks.result();
+    let largest = energy_bound::check_largest(scene, whole, settings, ask.measure, seen.largest)?;
     Ok(Extremes { largest, ..seen })
 }

@@ -1,13 +1,13 @@
 //! Derivatives through a contact that was computed at once, by the implicit function theorem.
 //!
 //! A small change moves touch-down by `s`, the indentation at each node by `δz` and the duration by `δT`. The collocated equations (see
-//! `contact/collocation/solve.rs`), differentiated, are as many linear equations as there are unknowns; their matrix is the true
-//! Jacobian at the solution, not the one that Newton's iteration is preconditioned with. So these are the derivatives of what is
-//! computed, and as accurate. Wanted are four numbers of each solution, the change of the state after the contact: four solutions of the
-//! transposed equations give them for any number of changes.
+//! `contact/collocation/solve.rs`), differentiated, are as many linear equations as there are unknowns; their matrix is the true Jacobian
+//! at the solution, not the one that Newton's iteration is preconditioned with. So these are the derivatives of what is computed, and as
+//! accurate. Only four numbers of each solution are needed, the change of the state after the contact: four solutions of the transposed
+//! equations give them for any number of changes.
 
 use super::flight::Flight;
-use super::series::{Along, BRIEF, Moment, Row, applied, identity};
+use super::series::{BRIEF, EquationSensitivity, Moment, Row, applied, identity};
 use crate::motion::linearised::{LinearContact, MOMENTS};
 use nalgebra::DMatrix;
 use retune_model::{Coupled, Parameter, Side};
@@ -21,10 +21,10 @@ pub(super) struct Kicks {
 impl Kicks {
     pub(super) fn new(system: &Coupled, flight: &Flight, side: Side, parameters: &[Parameter]) -> Self {
         let push = -side.sign() * system.hertz(side);
-        let mut own = [[0.0; 4]; MOMENTS];
-        own[0] = system.derivative_under([0.0; 2], &system.rest(), push);
+        let mut kicks = [[0.0; 4]; MOMENTS];
+        kicks[0] = system.derivative_under([0.0; 2], &system.rest(), push);
         for k in 1..MOMENTS {
-            own[k] = flight.linear(own[k - 1]);
+            kicks[k] = flight.linear(kicks[k - 1]);
         }
         let by = |(number, &parameter): (usize, &Parameter)| {
             let mut by = [[0.0; 4]; MOMENTS];
@@ -33,8 +33,8 @@ impl Kicks {
             let without = system.acceleration_by(parameter, &system.rest(), [0.0; 2]);
             by[0] = [0.0, with[0] - without[0], 0.0, with[1] - without[1]];
             for k in 1..MOMENTS {
-                let [more, own] = [flight.linear_by(number, own[k - 1]), flight.linear(by[k - 1])];
-                by[k] = std::array::from_fn(|i| own[i] + more[i]);
+                let [direct, carried] = [flight.linear_by(number, kicks[k - 1]), flight.linear(by[k - 1])];
+                by[k] = std::array::from_fn(|i| carried[i] + direct[i]);
             }
             by
         };
@@ -46,7 +46,7 @@ impl Kicks {
 pub(super) struct Change {
     /// Of the state at the time of touch-down, and of the force there.
     pub at: Moment,
-    /// The number of the parameter whose change it is; none for a change of the first state.
+    /// The number of the parameter whose change it is; `None` for a change of the first state.
     pub parameter: Option<usize>,
     /// The change of the wall's position, m.
     pub wall: f64,
@@ -54,27 +54,27 @@ pub(super) struct Change {
     pub loss: bool,
 }
 
-/// How one contact hands changes on.
-pub(super) struct Crossing<'a> {
+/// The linear map of changes over one contact.
+pub(super) struct ContactMap<'a> {
     flight: &'a Flight,
     kicks: &'a Kicks,
     contact: LinearContact,
-    /// By how much the state after the contact changes, for a unit change of the state and the force at touch-down, of the wall's
-    /// position, and of the time of touch-down.
+    /// The change of the state after the contact per unit change of the state and the force at touch-down; `by_wall`, of the wall's
+    /// position; `by_delay`, of the time of touch-down.
     row: Row,
-    /// What changes of the equations do to it, along the motion without contact from touch-down on.
-    along: Along,
+    /// The effect of changes of the equations on it, along the motion without contact from touch-down on.
+    sensitivity: EquationSensitivity,
     by_wall: f64x4,
     by_delay: f64x4,
     /// `d(x2 - x1)/dt` at touch-down.
     closing: f64,
-    /// What a change of the push of each order does to it by the indentation.
+    /// The effect of a change of the push of each order on it through the indentation.
     pushes: [f64x4; MOMENTS],
-    /// What a small loss does to it, per unit of λ, if that is asked for.
+    /// The effect of a small loss on it, per unit of λ, if requested.
     by_loss: f64x4,
 }
 
-impl<'a> Crossing<'a> {
+impl<'a> ContactMap<'a> {
     pub(super) fn new(
         system: &'a Coupled,
         flight: &'a Flight,
@@ -141,27 +141,38 @@ impl<'a> Crossing<'a> {
             row
         });
         let rate = system.derivative_under(touch.excitation, &touch.y, 0.0);
-        let begin = Moment { y: rate, force: flight.turn(touch.excitation) };
+        let begin = Moment { y: rate, force: flight.force_rate(touch.excitation) };
         let by_delay = applied(&rows[0], &begin) - f64x4::from(after);
         let (by_wall, closing) = (-powers[0], rate[2] - rate[0]);
-        let along = Along::new(free.terms(), &rows, 1.0, 1.0);
-        Self { flight, kicks, contact, row: rows[0], along, by_wall, by_delay, closing, pushes, by_loss }
+        let sensitivity = EquationSensitivity::new(free.terms(), &rows, 1.0, 1.0);
+        Self {
+            flight,
+            kicks,
+            contact,
+            row: rows[0],
+            sensitivity,
+            by_wall,
+            by_delay,
+            closing,
+            pushes,
+            by_loss,
+        }
     }
 
     /// The change of the state at the time of lift-off.
     pub(super) fn carry(&self, change: &Change) -> [f64; 4] {
         let Change { at, parameter, wall, loss } = change;
         // Touch-down moves to where the gap closes; up to there the motion is that without contact.
-        let later = (wall - (at.y[2] - at.y[0])) / self.closing;
-        let mut end = applied(&self.row, at) + self.by_delay * later + self.by_wall * *wall;
+        let delay = (wall - (at.y[2] - at.y[0])) / self.closing;
+        let mut end = applied(&self.row, at) + self.by_delay * delay + self.by_wall * *wall;
         if *loss {
             end += self.by_loss;
         }
         if let Some(number) = parameter {
-            end += self.flight.forced(*number, &self.along);
+            end += self.flight.parameter_effect(*number, &self.sensitivity);
             let last = &self.contact.impulses[self.contact.roots.len()];
-            let pushed = self.kicks.by[*number].iter().zip(last).zip(&self.pushes).take(self.contact.terms);
-            for ((kick, impulse), push) in pushed {
+            let pushes = self.kicks.by[*number].iter().zip(last).zip(&self.pushes).take(self.contact.terms);
+            for ((kick, impulse), push) in pushes {
                 end += f64x4::from(*kick) * *impulse + *push * (kick[2] - kick[0]);
             }
         }

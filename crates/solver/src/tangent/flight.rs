@@ -1,30 +1,30 @@
 //! Derivatives in flight: Taylor series over whole steps, kept as matrices, and over the rest of the flight.
 
-use super::series::{Along, BRIEF, Moment, Row, Series, applied, dot, identity, sum};
+use super::series::{BRIEF, EquationSensitivity, Moment, Row, Series, applied, dot, identity, sum};
 use retune_model::{Coupled, Excitation, Parameter};
 use wide::f64x4;
 
 /// Length of a whole step times the rate of the flow, and the terms after which the series has converged (`1.25²⁰/20! = 4e-17`).
 const STEP: f64 = 1.25;
 const TERMS: u32 = 20;
-/// Most terms of a series, the first among them.
+/// Limit on terms of a series, the first included.
 pub(super) const MOST: usize = TERMS as usize + 1;
 
-/// What a flight starts from: the state, the force, and 1 for the constant terms.
+/// Components of the start of a flight: the state, the force, and 1 for the constant terms.
 const WIDTH: usize = 7;
 
 /// The linear equations of a flight and their derivatives by some parameters.
 pub(super) struct Flight {
-    /// `[x1'', x2'']` by the state, by the force, and constant.
+    /// `[x1'', x2'']`: coefficients of the state, of the force, and constant.
     rows: [[f64; 6]; 2],
-    /// Their derivatives by each parameter, by the state and constant.
+    /// Their derivatives by each parameter: coefficients of the state, and constant.
     rows_by: Vec<[[f64; 5]; 2]>,
-    /// Which parameter is ω.
+    /// Whether each parameter is ω.
     turning: Vec<bool>,
     omega: f64,
     rate: f64,
     step: f64,
-    /// A state after a whole step by what it starts from, and its derivatives by each parameter: column by column.
+    /// The map from the start of a whole step to the state after it, and its derivatives by each parameter: column by column.
     whole: [[f64; 4]; WIDTH],
     whole_by: Vec<[[f64; 4]; WIDTH]>,
 }
@@ -83,7 +83,7 @@ impl Flight {
     }
 
     /// Carries the motion, its derivatives by the first state and those by the parameters over `seconds` of flight. The forces of the
-    /// derivatives are given at the beginning of each stretch by `forces(t)`, `t` seconds after the beginning of the flight.
+    /// derivatives are given at the beginning of each step by `force_by(number, t)`, `t` seconds after the beginning of the flight.
     pub(super) fn fly(
         &self,
         seconds: f64,
@@ -100,8 +100,8 @@ impl Flight {
             let from = [now[0], now[1], now[2], now[3], c, s, 1.0];
             for (number, column) in by.iter_mut().enumerate() {
                 let [c, s] = force_by(number, elapsed);
-                let own = [column[0], column[1], column[2], column[3], c, s, 0.0];
-                *column = sum(product(&self.whole, &own), product(&self.whole_by[number], &from));
+                let start = [column[0], column[1], column[2], column[3], c, s, 0.0];
+                *column = sum(product(&self.whole, &start), product(&self.whole_by[number], &from));
             }
             for column in &mut *by_state {
                 *column = product(&self.whole, column);
@@ -133,25 +133,29 @@ impl Flight {
         for column in by_state {
             *column = applied(&rows[0], &Moment { y: *column, force: [0.0; 2] }).to_array();
         }
-        let along = if by.is_empty() { None } else { Some(Along::new(&terms[..count], &rows, h, constant)) };
-        for ((number, by), along) in by.iter_mut().enumerate().zip(along.iter().cycle()) {
-            by.y = (applied(&rows[0], by) + self.forced(number, along)).to_array();
+        let sensitivity = if by.is_empty() {
+            None
+        } else {
+            Some(EquationSensitivity::new(&terms[..count], &rows, h, constant))
+        };
+        for ((number, by), sensitivity) in by.iter_mut().enumerate().zip(sensitivity.iter().cycle()) {
+            by.y = (applied(&rows[0], by) + self.parameter_effect(number, sensitivity)).to_array();
         }
         for term in &terms[1..count] {
             from.y = sum(from.y, term.y);
         }
     }
 
-    /// What a change of each coefficient of a Taylor series does to four numbers, where `own(k)` is what the coefficient of order `k` itself does to
-    /// them: a change also goes on into all later coefficients. Of `(y, force)`, in steps of `h`.
-    pub(super) fn functionals(&self, count: usize, h: f64, own: impl Fn(usize) -> Row) -> [Row; MOST] {
+    /// The effect of a change of each coefficient of a Taylor series in steps of `h` on four numbers, as rows of `(y, force)`. `direct(k)`
+    /// is the direct effect of the coefficient of order `k`; a change also propagates into all later coefficients.
+    pub(super) fn functionals(&self, count: usize, h: f64, direct: impl Fn(usize) -> Row) -> [Row; MOST] {
         let mut rows = [[f64x4::ZERO; 6]; MOST];
         for k in (0..count).rev() {
-            let mut row = own(k);
+            let mut row = direct(k);
             if k + 1 < count {
                 let share = h / (k + 1) as f64;
-                for (own, later) in row.iter_mut().zip(self.transposed(&rows[k + 1])) {
-                    *own += later * share;
+                for (weight, later) in row.iter_mut().zip(self.transposed(&rows[k + 1])) {
+                    *weight += later * share;
                 }
             }
             rows[k] = row;
@@ -159,10 +163,10 @@ impl Flight {
         rows
     }
 
-    /// What the change of the equations by the parameter of this number does to the four numbers, along a motion.
-    pub(super) fn forced(&self, number: usize, along: &Along) -> f64x4 {
-        let mut sum = if self.turning[number] { along.turned } else { f64x4::ZERO };
-        for (by, rows) in along.by.iter().zip(&self.rows_by[number]) {
+    /// The effect on the four numbers, along a motion, of the change of the equations by the parameter of this number.
+    pub(super) fn parameter_effect(&self, number: usize, sensitivity: &EquationSensitivity) -> f64x4 {
+        let mut sum = if self.turning[number] { sensitivity.turned } else { f64x4::ZERO };
+        for (by, rows) in sensitivity.by.iter().zip(&self.rows_by[number]) {
             for (by, row) in by.iter().zip(rows) {
                 sum += *by * *row;
             }
@@ -173,8 +177,15 @@ impl Flight {
     /// The transposed equations of a flight.
     fn transposed(&self, &[x1, v1, x2, v2, c, s]: &Row) -> Row {
         let [first, second] = &self.rows;
-        let own = |j: usize| v1 * first[j] + v2 * second[j];
-        [own(0), x1 + own(1), own(2), x2 + own(3), own(4) + s * self.omega, c * -self.omega]
+        let weighted = |j: usize| v1 * first[j] + v2 * second[j];
+        [
+            weighted(0),
+            x1 + weighted(1),
+            weighted(2),
+            x2 + weighted(3),
+            weighted(4) + s * self.omega,
+            c * -self.omega,
+        ]
     }
 
     /// The series of the motion from a moment on, for `seconds` of a brief contact.
@@ -194,16 +205,15 @@ impl Flight {
 
     /// The derivative of `A` by the parameter of this number, times `y`.
     pub(super) fn linear_by(&self, number: usize, y: [f64; 4]) -> [f64; 4] {
-        self.more(number, &Moment { y, force: [0.0; 2] }, 0.0).y
+        self.derivative_by(number, &Moment { y, force: [0.0; 2] }, 0.0).y
     }
 
-    /// The rate of the force.
-    pub(super) fn turn(&self, [c, s]: Excitation) -> Excitation {
+    pub(super) fn force_rate(&self, [c, s]: Excitation) -> Excitation {
         [-self.omega * s, self.omega * c]
     }
 
     /// The derivatives of the equations of a flight by the parameter of this number.
-    fn more(&self, number: usize, Moment { y, force: [c, s] }: &Moment, constant: f64) -> Moment {
+    fn derivative_by(&self, number: usize, Moment { y, force: [c, s] }: &Moment, constant: f64) -> Moment {
         let rows = &self.rows_by[number];
         let [a1, a2] = [0, 1].map(|row| dot(&rows[row][..4], y) + rows[row][4] * constant);
         let force = if self.turning[number] { [-s, *c] } else { [0.0; 2] };
@@ -216,7 +226,7 @@ impl Flight {
             let row = &self.rows[row];
             dot(&row[..4], y) + row[4] * c + row[5] * constant
         });
-        Moment { y: [y[1], a1, y[3], a2], force: self.turn([*c, *s]) }
+        Moment { y: [y[1], a1, y[3], a2], force: self.force_rate([*c, *s]) }
     }
 
     /// `e^(A h) y` without force, for `h` seconds of at most a few whole steps, forward or backward.
@@ -244,8 +254,8 @@ impl Flight {
             let share = h / f64::from(k);
             size *= self.rate * share.abs();
             let [x1, v1, x2, v2] = term;
-            let own = |j: usize| v1 * first[j] + v2 * second[j];
-            term = [own(0), x1 + own(1), own(2), x2 + own(3)].map(|v| v * share);
+            let weighted = |j: usize| v1 * first[j] + v2 * second[j];
+            term = [weighted(0), x1 + weighted(1), weighted(2), x2 + weighted(3)].map(|v| v * share);
             for (sum, term) in sum.iter_mut().zip(term) {
                 *sum += term;
             }

@@ -9,8 +9,8 @@ use crate::observe::structure::StructureMotion;
 use crate::response::Extreme;
 use retune_model::{Coupled, Measure, Parameter, Side};
 
-/// A maximum is flat, so that its time has half of its digits; the derivatives are not flat. Times are corrected by at most this, s: what is
-/// farther from a place of slope zero is no smooth maximum but an end of the window.
+/// A maximum is flat, so its time has only half of the digits; the derivatives are not flat. Times are corrected by at most this, s: a
+/// value farther from a zero of the slope is no smooth maximum but at an end of the window.
 const LATE: f64 = 1e-5;
 
 /// The derivatives of a largest value that a run from its start at t = 0, until `last` (s), reaches at a known time.
@@ -30,19 +30,19 @@ pub(crate) fn gradient_at(
         return Ok(by);
     }
     let mut found = tangent.propagate(start, at.time, &mut Unobserved)?;
-    let late = lateness(system, measure, &found.end);
+    let late = time_past_maximum(system, measure, &found.end);
     if late != 0.0 && late.abs() <= LATE && at.time - late <= last {
         found = tangent.propagate(start, at.time - late, &mut Unobserved)?;
     }
     Ok(derivatives(system, measure, &found, parameters))
 }
 
-/// An impact as near to the time of a largest value as this, s, is where it is reached, if the value there is the largest to this share.
+/// A largest value is taken as reached at an impact if their times differ by at most this, s, and their values by at most this share.
 const AT_IMPACT: f64 = 1e-9;
 const SAME: f64 = 1e-12;
 
-/// The derivatives of a largest value that is reached at an impact with a rigid wall, just before or just after it: those at the time of the
-/// impact, which moves; none if it is reached elsewhere.
+/// The derivatives of a largest value that is reached at an impact with a rigid wall, just before or just after it: those at the time of
+/// the impact, which moves; `None` if it is reached elsewhere.
 fn at_impact(
     system: &Coupled,
     tangent: &mut Tangent<'_>,
@@ -55,36 +55,36 @@ fn at_impact(
         return Ok(None);
     }
     let within = AT_IMPACT * at.time.max(1.0);
-    let struck = tangent.strike(Motion::start(system), at.time - within, last.min(at.time + within))?;
-    let Some(struck) = struck else { return Ok(None) };
-    let [before, after] = struck.sides.each_ref().map(|side| rates(system, measure, &side.end)[0].abs());
-    let side = if before > after { &struck.sides[0] } else { &struck.sides[1] };
+    let impact = tangent.first_impact(Motion::start(system), at.time - within, last.min(at.time + within))?;
+    let Some(impact) = impact else { return Ok(None) };
+    let [before, after] = impact.sides.each_ref().map(|side| rates(system, measure, &side.end)[0].abs());
+    let side = if before > after { &impact.sides[0] } else { &impact.sides[1] };
     if before.max(after) < at.value * (1.0 - SAME) {
         return Ok(None);
     }
     let mut by = derivatives(system, measure, side, parameters);
     if measure == Measure::Acceleration {
-        // It depends on the force, too, which goes on while the impact is late.
+        // The acceleration also depends on the force, which changes while the impact is delayed.
         let (t, y) = (side.end.t, &side.end.y);
         let (now, [a, ..]) = (system.excitation(t), rates(system, measure, &side.end));
         let turned = [-system.bare().frequency() * now[1], 0.0];
         let pushed = system.derivative(turned, y)[1] - system.derivative([0.0; 2], y)[1];
-        for ((by, late), &parameter) in by.iter_mut().zip(&struck.late).zip(parameters) {
+        for ((by, delay), &parameter) in by.iter_mut().zip(&impact.delays).zip(parameters) {
             let moves = parameter == Parameter::D && system.starts_at_rest_distance();
-            let late = late + if moves { struck.late_by_state[2] } else { 0.0 };
-            *by += a.signum() * pushed * late;
+            let delay = delay + if moves { impact.delays_by_state[2] } else { 0.0 };
+            *by += a.signum() * pushed * delay;
         }
     }
     Ok(Some(by))
 }
 
-/// By how much (s) a moment is later than the maximum beside it: the slope of the measured quantity over its curvature.
-fn lateness(system: &Coupled, measure: Measure, now: &Motion) -> f64 {
+/// By how much (s) a moment is later than the nearest maximum: the slope of the measured quantity over its curvature.
+fn time_past_maximum(system: &Coupled, measure: Measure, now: &Motion) -> f64 {
     let [_, slope, curvature] = rates(system, measure, now);
     if curvature == 0.0 { 0.0 } else { slope / curvature }
 }
 
-/// The quantity whose size is measured, with its slope and curvature in time.
+/// The quantity whose magnitude is measured, with its slope and curvature in time.
 fn rates(system: &Coupled, measure: Measure, now: &Motion) -> [f64; 3] {
     let excitation = system.excitation(now.t);
     let motion = || system.primary_motion(excitation, &now.y);

@@ -1,9 +1,9 @@
-//! The derivatives of a run, taken along as it is followed.
+//! The derivatives of a run, computed while it is followed.
 
-use super::collision::{Change, Crossing, Kicks};
+use super::collision::{Change, ContactMap, Kicks};
 use super::contact::{Nodes, carry, nodes};
 use super::flight::Flight;
-use super::rigid::{Jump, hold};
+use super::rigid::{ImpactMap, hold};
 use super::series::Moment;
 use crate::error::SolverError;
 use crate::hybrid::propagator::{Motion, Phase};
@@ -16,7 +16,7 @@ use crate::run::Follower;
 use crate::settings::Settings;
 use retune_model::{Coupled, Excitation, Parameter, Side};
 
-/// Where a motion is after some time, and how that changes with where it started and with parameters, at a fixed time.
+/// The state of a motion at a fixed time, and its derivatives by the first state and by parameters.
 #[derive(Clone, Debug)]
 pub struct Transition {
     /// The motion at its end.
@@ -28,12 +28,12 @@ pub struct Transition {
 }
 
 /// An impact with a rigid wall, and the derivatives at its own time, which moves.
-pub(super) struct Struck {
+pub(super) struct ImpactTransition {
     /// Just before and just after it.
     pub sides: [Transition; 2],
-    /// By how much later it is by each parameter, and by each component of the first state, s per unit.
-    pub late: Vec<f64>,
-    pub late_by_state: [f64; 4],
+    /// The derivatives of its time by each parameter, and by each component of the first state, s per unit.
+    pub delays: Vec<f64>,
+    pub delays_by_state: [f64; 4],
 }
 
 /// Follows motions of one system with their derivatives.
@@ -48,7 +48,7 @@ struct Prepared<'a> {
     flight: Flight,
     kicks: [Kicks; 2],
     parameters: Vec<Parameter>,
-    /// Those on which the force depends.
+    /// Whether the force depends on each of them.
     forces: Vec<bool>,
 }
 
@@ -81,10 +81,10 @@ impl<'a> Tangent<'a> {
         to: f64,
         observer: &mut dyn Observer<4>,
     ) -> Result<Transition, SolverError> {
-        let mut course = Course::new(&self.prepared, from);
-        let end = self.follower.propagate(from, to, &mut (&mut course, observer))?;
-        course.fly(end.t);
-        let Course { by_state, by, grazed, .. } = course;
+        let mut derivatives = DerivativeObserver::new(&self.prepared, from);
+        let end = self.follower.propagate(from, to, &mut (&mut derivatives, observer))?;
+        derivatives.fly_to(end.t);
+        let DerivativeObserver { by_state, by, grazed, .. } = derivatives;
         match grazed {
             Some(t) => Err(SolverError::Grazing { t }),
             None => Ok(Transition { end, by_state, by }),
@@ -95,16 +95,21 @@ impl<'a> Tangent<'a> {
     ///
     /// # Errors
     /// [`SolverError`] with the time reached.
-    pub(super) fn strike(&mut self, from: Motion, near: f64, to: f64) -> Result<Option<Struck>, SolverError> {
-        let mut course = Course::new(&self.prepared, from);
-        course.near = near;
-        self.follower.propagate(from, to, &mut (&mut course, Unobserved))?;
-        Ok(course.struck)
+    pub(super) fn first_impact(
+        &mut self,
+        from: Motion,
+        near: f64,
+        to: f64,
+    ) -> Result<Option<ImpactTransition>, SolverError> {
+        let mut derivatives = DerivativeObserver::new(&self.prepared, from);
+        derivatives.near = near;
+        self.follower.propagate(from, to, &mut (&mut derivatives, Unobserved))?;
+        Ok(derivatives.first_impact)
     }
 }
 
 /// The derivatives at a moment of a run.
-struct Course<'a> {
+struct DerivativeObserver<'a> {
     system: &'a Coupled,
     flight: &'a Flight,
     kicks: &'a [Kicks; 2],
@@ -116,12 +121,12 @@ struct Course<'a> {
     by: Vec<[f64; 4]>,
     /// When the damper first grazed a rigid wall, s.
     grazed: Option<f64>,
-    /// From when on an impact is kept, s, and the derivatives at its own time, which moves, before and after it.
+    /// The time (s) from which on the first impact is kept, and the derivatives at its own time, which moves, before and after it.
     near: f64,
-    struck: Option<Struck>,
+    first_impact: Option<ImpactTransition>,
 }
 
-impl<'a> Course<'a> {
+impl<'a> DerivativeObserver<'a> {
     fn new(prepared: &'a Prepared<'_>, from: Motion) -> Self {
         Self {
             system: prepared.system,
@@ -135,7 +140,7 @@ impl<'a> Course<'a> {
             by: vec![[0.0; 4]; prepared.parameters.len()],
             grazed: None,
             near: f64::INFINITY,
-            struck: None,
+            first_impact: None,
         }
     }
 
@@ -148,8 +153,8 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// Goes on to `t` (s) in flight.
-    fn fly(&mut self, t: f64) {
+    /// Advances to `t` (s) in flight.
+    fn fly_to(&mut self, t: f64) {
         let (seconds, from) = (t - self.t, self.t);
         if seconds <= 0.0 {
             return;
@@ -161,9 +166,9 @@ impl<'a> Course<'a> {
         (self.t, self.by_state, self.by) = (t, by_state, by);
     }
 
-    /// Goes on through a stretch of a contact that is followed.
-    fn follow(&mut self, nodes: &Nodes) {
-        self.fly(nodes.span[0]);
+    /// Advances through a stretch of a contact that is followed step by step.
+    fn carry_through_steps(&mut self, nodes: &Nodes) {
+        self.fly_to(nodes.span[0]);
         let from = self.t;
         let (mut by_state, mut by) = (self.by_state, std::mem::take(&mut self.by));
         let force_by = |number: usize, elapsed: f64| self.force_by(number, from + elapsed);
@@ -172,68 +177,63 @@ impl<'a> Course<'a> {
     }
 
     /// The derivatives at the time of an impact, which moves; `by_state` and `by` are those after it.
-    fn struck(
+    fn impact_transition(
         &self,
         impact: &Impact<4>,
-        jump: &Jump<'_>,
+        jump: &ImpactMap<'_>,
         by_state: &[[f64; 4]; 4],
         by: &[[f64; 4]],
-    ) -> Struck {
+    ) -> ImpactTransition {
         let delays = self.by_state.map(|change| jump.delay(&change, None));
         let numbered = self.by.iter().zip(self.parameters);
-        let late: Vec<f64> =
+        let by_parameter: Vec<f64> =
             numbered.map(|(change, &parameter)| jump.delay(change, Some(parameter))).collect();
-        let moved = |change: &[f64; 4], rate: &[f64; 4], late: f64| -> [f64; 4] {
-            std::array::from_fn(|i| change[i] + rate[i] * late)
+        let moved = |change: &[f64; 4], rate: &[f64; 4], delay: f64| -> [f64; 4] {
+            std::array::from_fn(|i| change[i] + rate[i] * delay)
         };
         let side = |knot: &Knot<4>, rate: &[f64; 4], by_state: &[[f64; 4]; 4], by: &[[f64; 4]]| Transition {
             end: Motion { t: knot.t, y: knot.y, phase: Phase::Flight },
             by_state: std::array::from_fn(|j| moved(&by_state[j], rate, delays[j])),
-            by: by.iter().zip(&late).map(|(change, &late)| moved(change, rate, late)).collect(),
+            by: by.iter().zip(&by_parameter).map(|(change, &delay)| moved(change, rate, delay)).collect(),
         };
         let [before, after] = &jump.rates;
         let sides = [
             side(&impact.before, before, &self.by_state, &self.by),
             side(&impact.after, after, by_state, by),
         ];
-        Struck { sides, late, late_by_state: delays }
+        ImpactTransition { sides, delays: by_parameter, delays_by_state: delays }
     }
 
-    /// Goes on through a contact that was computed at once.
-    fn cross(&mut self, contact: LinearContact) {
+    /// Advances through a contact that was computed at once.
+    fn carry_through_collision(&mut self, contact: LinearContact) {
         let (t, side) = (contact.touch.t, contact.side);
-        self.fly(t);
+        self.fly_to(t);
         let (end, lift_off) = (contact.end, t + contact.duration);
-        let crossing = Crossing::new(self.system, self.flight, &self.kicks[side as usize], contact);
+        let map = ContactMap::new(self.system, self.flight, &self.kicks[side as usize], contact);
         let by_state = self.by_state.map(|y| {
-            crossing.carry(&Change {
-                at: Moment { y, force: [0.0; 2] },
-                parameter: None,
-                wall: 0.0,
-                loss: false,
-            })
+            map.carry(&Change { at: Moment { y, force: [0.0; 2] }, parameter: None, wall: 0.0, loss: false })
         });
         let by = self.by.iter().enumerate().map(|(number, &y)| {
             let at = Moment { y, force: self.force_by(number, t) };
             let wall = self.system.wall_by(self.parameters[number], side);
             let loss = self.parameters[number] == Parameter::Lambda;
-            crossing.carry(&Change { at, parameter: Some(number), wall, loss })
+            map.carry(&Change { at, parameter: Some(number), wall, loss })
         });
         let by = by.collect();
         (self.t, self.y, self.by_state, self.by) = (lift_off, end, by_state, by);
     }
 }
 
-impl Observer<4> for Course<'_> {
+impl Observer<4> for DerivativeObserver<'_> {
     fn segment(&mut self, segment: &dyn Segment<4>) {
         if segment.in_flight() {
             return;
         }
         if !self.system.is_rigid() {
-            return self.follow(&nodes(segment));
+            return self.carry_through_steps(&nodes(segment));
         }
         let [begin, end] = segment.ends();
-        self.fly(begin.t);
+        self.fly_to(begin.t);
         let (from, seconds) = ((begin.t, begin.y), segment.length());
         let (mut by_state, mut by) = (self.by_state, std::mem::take(&mut self.by));
         let force_by = |number: usize, elapsed: f64| self.force_by(number, begin.t + elapsed);
@@ -241,29 +241,29 @@ impl Observer<4> for Course<'_> {
         (self.t, self.y, self.by_state, self.by) = (end.t, end.y, by_state, by);
     }
     fn impact(&mut self, impact: &Impact<4>) {
-        self.fly(impact.before.t);
+        self.fly_to(impact.before.t);
         if impact.grazes {
             self.grazed.get_or_insert(impact.before.t);
         }
-        let jump = Jump::new(self.system, impact);
+        let jump = ImpactMap::new(self.system, impact);
         let by_state = self.by_state.map(|change| jump.carry(&change, None));
         let numbered = self.by.iter().zip(self.parameters);
         let by: Vec<[f64; 4]> =
             numbered.map(|(change, &parameter)| jump.carry(change, Some(parameter))).collect();
-        if impact.before.t >= self.near && self.struck.is_none() {
-            self.struck = Some(self.struck(impact, &jump, &by_state, &by));
+        if impact.before.t >= self.near && self.first_impact.is_none() {
+            self.first_impact = Some(self.impact_transition(impact, &jump, &by_state, &by));
         }
         (self.t, self.y, self.by_state, self.by) = (impact.after.t, impact.after.y, by_state, by);
     }
     fn satisfied(&self) -> bool {
-        self.struck.is_some()
+        self.first_impact.is_some()
     }
-    /// The force of a lossy contact is not a function of the depths alone, so that [`Path::linearised`] does not hold for it.
+    /// The force of a lossy contact is not a function of the depths alone, so [`Path::linearised`] does not hold for it.
     fn follows_contacts(&self) -> bool {
         true
     }
     fn path(&mut self, path: &dyn Path<4>) {
-        self.cross(path.linearised(self.parameters.contains(&Parameter::Lambda)));
+        self.carry_through_collision(path.linearised(self.parameters.contains(&Parameter::Lambda)));
     }
     fn steps(&mut self, _steps: &Steps<'_, 4>) {}
 }

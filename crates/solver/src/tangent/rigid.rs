@@ -1,22 +1,22 @@
 //! Derivatives through an impact with a rigid wall, and along the stretch on which a wall holds the damper.
 //!
 //! An impact is the map `G` of the state where `r` reaches the wall. A change `δ` moves its time by `s = (δwall - δr) / r'`, so at a fixed
-//! time after it the change is `G δ + (G f - f') s`, with the equations' right sides `f` before and `f'` after it, and what the parameter
-//! does to `G` itself: the saltation matrix (`docs/theory.md`, "Rigid walls").
+//! time after it the change is `G δ + (G f - f') s`, with the equations' right-hand sides `f` before and `f'` after it, plus the derivative
+//! of `G` itself by the parameter: the saltation matrix (`docs/theory.md`, "Rigid walls").
 
 use super::series::sum;
 use crate::observe::observer::Impact;
 use retune_model::{Coupled, Excitation, Parameter};
 
-/// An impact, for small changes.
-pub(super) struct Jump<'a> {
+/// An impact as a map of small changes.
+pub(super) struct ImpactMap<'a> {
     system: &'a Coupled,
     impact: Impact<4>,
     /// `f` before and after it.
     pub rates: [[f64; 4]; 2],
 }
 
-impl<'a> Jump<'a> {
+impl<'a> ImpactMap<'a> {
     pub(super) fn new(system: &'a Coupled, impact: &Impact<4>) -> Self {
         let Impact { before, after, caught, .. } = impact;
         let flight = |y| system.derivative_under(before.excitation, y, 0.0);
@@ -31,7 +31,7 @@ impl<'a> Jump<'a> {
         parameter.map_or(0.0, |parameter| self.system.wall_by(parameter, self.impact.side))
     }
 
-    /// By how much later the impact is, for a change of the state at its time, s.
+    /// The delay of the impact, s, for a change of the state at its time.
     pub(super) fn delay(&self, change: &[f64; 4], parameter: Option<Parameter>) -> f64 {
         let [_, v1, _, v2] = self.impact.before.y;
         (self.wall_by(parameter) - (change[2] - change[0])) / (v2 - v1)
@@ -43,22 +43,23 @@ impl<'a> Jump<'a> {
             return self.carry_caught(change, parameter);
         }
         let (before, e) = (&self.impact.before.y, self.system.restitution().unwrap_or(1.0));
-        let [turned, own] = [self.system.struck(e, change), self.system.struck_by(parameter, before)];
-        let (late, [f, after]) = (self.delay(change, parameter), self.rates);
-        let turned_rate = self.system.struck(e, &f);
-        sum(sum(turned, own), std::array::from_fn(|i| (turned_rate[i] - after[i]) * late))
+        let [mapped, direct] = [self.system.struck(e, change), self.system.struck_by(parameter, before)];
+        let (delay, [f, after]) = (self.delay(change, parameter), self.rates);
+        let mapped_rate = self.system.struck(e, &f);
+        sum(sum(mapped, direct), std::array::from_fn(|i| (mapped_rate[i] - after[i]) * delay))
     }
 
-    /// The same where the wall holds the damper afterwards: only the change of the common motion is left. It is written without the delay,
-    /// which is not known where a chatter ends: the speed there is that of rounding.
+    /// [`Self::carry`] where the wall holds the damper afterwards: only the change of the common motion is left. It does without the delay,
+    /// which is undetermined where a chatter ends: the speed there is of the size of rounding.
     fn carry_caught(&self, &[x1, v1, x2, v2]: &[f64; 4], parameter: Option<Parameter>) -> [f64; 4] {
         let ([m1, m2], wall, [_, c1]) =
             (self.system.masses(), self.wall_by(parameter), self.system.bare().ground_force_weights());
-        let (m, apart) = (m1 + m2, wall - (x2 - x1));
+        let (m, gap) = (m1 + m2, wall - (x2 - x1));
         let [_, before_1, _, before_2] = self.impact.before.y;
-        let own = if parameter == Some(Parameter::M2) { m1 * (before_2 - before_1) / (m * m) } else { 0.0 };
-        let x = x1 - m2 / m * apart;
-        let v = (m1 * v1 + m2 * v2) / m + c1 * m2 / (m * m) * apart + own;
+        let by_mass =
+            if parameter == Some(Parameter::M2) { m1 * (before_2 - before_1) / (m * m) } else { 0.0 };
+        let x = x1 - m2 / m * gap;
+        let v = (m1 * v1 + m2 * v2) / m + c1 * m2 / (m * m) * gap + by_mass;
         [x, v, x + wall, v]
     }
 }
@@ -86,35 +87,39 @@ pub(super) fn hold(
         let elapsed = f64::from(step) * h;
         // The motion and each change of it: place, speed, force and its quadrature.
         let [c, s] = system.excitation(t + elapsed);
-        let mut own = [x, v, c, s];
+        let mut motion = [x, v, c, s];
         let mut changes: Vec<(Option<usize>, [f64; 4])> =
             by_state.iter().map(|change| (None, [change[0], change[1], 0.0, 0.0])).collect();
         changes.extend(by.iter().enumerate().map(|(number, change)| {
             let [c, s] = force_by(number, elapsed);
             (Some(number), [change[0], change[1], c, s])
         }));
-        let mut sums = (own, changes.clone());
+        let mut sums = (motion, changes.clone());
         for k in 1..=TERMS {
             let share = h / f64::from(k);
             for ((number, term), (_, sum)) in changes.iter_mut().zip(&mut sums.1) {
                 let parameter = number.map(|number| parameters[number]);
                 let [dx, dv, dc, ds] = *term;
-                let turned = if parameter == Some(Parameter::Omega) { 1.0 } else { 0.0 };
+                let by_omega = if parameter == Some(Parameter::Omega) { 1.0 } else { 0.0 };
                 let direct = parameter.map_or(0.0, |parameter| {
-                    system.held_acceleration_by(parameter, [own[2], own[3]], &[own[0], own[1], 0.0, 0.0])
+                    system.held_acceleration_by(
+                        parameter,
+                        [motion[2], motion[3]],
+                        &[motion[0], motion[1], 0.0, 0.0],
+                    )
                 });
                 *term = [
                     dv,
                     acceleration(dc, dx, dv) + direct,
-                    -omega * ds - turned * own[3],
-                    omega * dc + turned * own[2],
+                    -omega * ds - by_omega * motion[3],
+                    omega * dc + by_omega * motion[2],
                 ]
                 .map(|rate| rate * share);
                 *sum = super::series::sum(*sum, *term);
             }
-            let [ox, ov, oc, os] = own;
-            own = [ov, acceleration(oc, ox, ov), -omega * os, omega * oc].map(|rate| rate * share);
-            sums.0 = sum(sums.0, own);
+            let [ox, ov, oc, os] = motion;
+            motion = [ov, acceleration(oc, ox, ov), -omega * os, omega * oc].map(|rate| rate * share);
+            sums.0 = sum(sums.0, motion);
         }
         [x, v, ..] = sums.0;
         let columns = by_state.iter_mut().chain(by.iter_mut());

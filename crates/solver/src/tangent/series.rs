@@ -1,5 +1,5 @@
-//! Taylor series of a motion and of its changes; and rows: what changes do to four numbers, the components of a state for instance, in the
-//! four lanes of a vector.
+//! Taylor series of a motion and of its changes; and rows: the effects of changes on four numbers, the components of a state for instance,
+//! in the four lanes of a vector.
 
 use retune_model::Excitation;
 use wide::f64x4;
@@ -28,7 +28,7 @@ pub(super) struct Series {
 }
 
 impl Series {
-    /// The series that begins so, each further term by its number and the one before it.
+    /// The series that begins with `from`; `rate` gives the derivative of a term, from the order of the next one and the term.
     pub(super) fn new(from: Moment, count: usize, rate: impl Fn(usize, &Moment) -> Moment) -> Self {
         let mut terms = [from; BRIEF];
         for k in 1..count {
@@ -37,7 +37,6 @@ impl Series {
         Self { terms, count }
     }
 
-    /// Its terms.
     pub(super) fn terms(&self) -> &[Moment] {
         &self.terms[..self.count]
     }
@@ -48,7 +47,6 @@ impl Series {
         terms.fold([0.0; 4], |sum, (k, term)| std::array::from_fn(|i| sum[i] * t + k as f64 * term.y[i]))
     }
 
-    /// The force.
     pub(super) fn force(&self, t: f64) -> Excitation {
         self.terms().iter().rev().fold([0.0; 2], |sum, term| [0, 1].map(|i| sum[i] * t + term.force[i]))
     }
@@ -62,7 +60,7 @@ pub(super) fn sum(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
-/// What a change of `(y, force)` does to four numbers, in four lanes.
+/// The effect of a change of `(y, force)` on four numbers, in four lanes.
 pub(super) type Row = [f64x4; 6];
 
 /// The state itself, times a factor.
@@ -70,22 +68,22 @@ pub(super) fn identity(factor: f64) -> Row {
     std::array::from_fn(|i| f64x4::from(std::array::from_fn(|lane| if lane == i { factor } else { 0.0 })))
 }
 
-/// What a row makes of a state and its force.
+/// A row applied to a state and its force.
 pub(super) fn applied(row: &Row, moment: &Moment) -> f64x4 {
     let [a, b, c, d, e, f] = *row;
     let ([x1, v1, x2, v2], [cosine, sine]) = (moment.y, moment.force);
     a * x1 + b * v1 + c * x2 + d * v2 + e * cosine + f * sine
 }
 
-/// What changes of the equations do to four numbers along a motion: one sum over its terms for all parameters.
-pub(super) struct Along {
-    /// Of either acceleration by each component of the state and constant.
+/// The effects of changes of the equations on four numbers along a motion: one sum over its terms for all parameters.
+pub(super) struct EquationSensitivity {
+    /// Of changes of either acceleration: of each coefficient of the state, and of the constant.
     pub by: [[f64x4; 5]; 2],
-    /// Of the rate of the force.
+    /// Of a change of the force's frequency ω.
     pub turned: f64x4,
 }
 
-impl Along {
+impl EquationSensitivity {
     /// For a motion with these terms, in steps of `h`; the rows are those of its coefficients.
     pub(super) fn new(terms: &[Moment], rows: &[Row], h: f64, constant: f64) -> Self {
         let (mut by, mut turned) = ([[f64x4::ZERO; 5]; 2], f64x4::ZERO);

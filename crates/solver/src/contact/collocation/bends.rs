@@ -1,9 +1,9 @@
 //! Where the force bends during a contact: at the samples of a record.
 //!
-//! Without contact, a jump `g` of the force's partner (see `retune_model::Excitation`) at the time `b` adds `g r(t - b)` to the motion from then
-//! on, with the response `r` to a partner of 1, whose depth begins like `(t - b)³`, or later where the base moves. So the motion without contact
-//! is still exact. The force of the contact is no polynomial there, but nearly one: what that costs follows from [`Added::kink`]
-//! (see `solve::KINK`).
+//! Without contact, a jump `g` of the force's partner (see `retune_model::Excitation`) at the time `b` adds `g r(t - b)` to the motion from
+//! then on, with the response `r` to a partner of 1, whose depth begins like `(t - b)³`, or later where the base moves. So the motion
+//! without contact is still exact. The force of the contact is no polynomial there, but nearly one: the resulting error follows from
+//! [`BendContribution::kink`] (see `solve::KINK`).
 
 use super::nodes::{Nodes, at_nodes};
 use crate::linear::flow::Expansion;
@@ -11,7 +11,7 @@ use crate::motion::polynomial::{BLOCKS, Polynomial};
 use retune_model::Excitation;
 use wide::f64x4;
 
-/// Most bends of a contact that is computed at once.
+/// Limit on bends in a contact that is computed at once.
 const MOST: usize = 24;
 
 /// The times of the bends, s since touch-down, and the jumps of the force's partner there, N.
@@ -21,10 +21,9 @@ pub struct Bends {
 }
 
 impl Bends {
-    /// A force that does not bend.
     pub const NONE: Self = Self { all: [[0.0; 2]; MOST], count: 0 };
 
-    /// Adds one later than all others; `false` if there are too many.
+    /// Adds a bend later than all others; `false` if there are too many.
     pub fn push(&mut self, time: f64, jump: f64) -> bool {
         let Some(place) = self.all.get_mut(self.count) else { return false };
         *place = [time, jump];
@@ -38,8 +37,9 @@ impl Bends {
         &self.all[..self.count]
     }
 
-    /// The pair of the force `elapsed` seconds after touch-down, at a bend that before it, from that of a force that does not bend; `omega` as in `f' = -ω s`.
-    pub fn bent(&self, mut pair: Excitation, omega: f64, elapsed: f64) -> Excitation {
+    /// The force and its partner `elapsed` seconds after touch-down (at a bend, just before it), from those of a force that does not bend;
+    /// `omega` as in `f' = -ω s`.
+    pub fn bent_excitation(&self, mut pair: Excitation, omega: f64, elapsed: f64) -> Excitation {
         for &[time, jump] in self.all() {
             let since = elapsed - time;
             if since > 0.0 {
@@ -50,29 +50,28 @@ impl Bends {
         pair
     }
 
-    /// What they add to a number of the motion of which `one` is the response to a jump of 1.
-    pub fn added(&self, one: Polynomial<BLOCKS>) -> Added<'_> {
-        Added { bends: self, one }
+    /// The contribution of the bends to a quantity whose response to a jump of 1 is `one`.
+    pub fn contribution(&self, one: Polynomial<BLOCKS>) -> BendContribution<'_> {
+        BendContribution { bends: self, one }
     }
 
-    /// What they add to the state.
-    pub fn to_state(&self, state: &mut [f64; 4], response: &Expansion<4>, elapsed: f64) {
+    pub fn add_to_state(&self, state: &mut [f64; 4], response: &Expansion<4>, elapsed: f64) {
         for (state, one) in state.iter_mut().zip(&response.0) {
-            *state += self.added(*one).at(elapsed);
+            *state += self.contribution(*one).at(elapsed);
         }
     }
 }
 
-/// What bends add to a number of the motion.
-pub struct Added<'a> {
+/// The contribution of bends to a quantity of the motion.
+pub struct BendContribution<'a> {
     bends: &'a Bends,
     one: Polynomial<BLOCKS>,
 }
 
-impl Added<'_> {
-    /// Adds it, `scale` times, to the numbers at these times, s since touch-down; with so many terms of the response.
+impl BendContribution<'_> {
+    /// Adds it to the values at these times, s since touch-down, with this many terms of the response.
     #[inline(always)]
-    pub fn to_nodes<const M: usize>(&self, nodes: &mut Nodes<M>, times: &Nodes<M>, terms: usize) {
+    pub fn add_to_nodes<const M: usize>(&self, nodes: &mut Nodes<M>, times: &Nodes<M>, terms: usize) {
         for &[time, jump] in self.bends.all() {
             let since = times.map(|t| (t - time).fast_max(f64x4::ZERO));
             let response = at_nodes(&self.one, terms, &since);
@@ -82,7 +81,6 @@ impl Added<'_> {
         }
     }
 
-    /// The same at one time.
     #[inline(always)]
     pub fn at(&self, elapsed: f64) -> f64 {
         let all = self.bends.all().iter();

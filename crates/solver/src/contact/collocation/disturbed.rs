@@ -1,16 +1,16 @@
-//! Collisions under small perturbations, solved exactly once a program: what the iteration of contacts is made of (see `newton`).
+//! Collisions under small perturbations, solved to rounding once per program: the basis of the iteration of contacts (see `newton`).
 
 use super::rule::Integrals;
 use super::undisturbed::DURATION;
 use nalgebra::{DMatrix, DVector};
 
-/// Most perturbations, the amount of each, and none of any.
+/// Limit on perturbations, their amounts, and the amounts without any.
 const MOST: usize = 3;
 pub type Amounts = [f64; MOST];
 pub const UNDISTURBED: Amounts = [0.0; MOST];
 
 /// A collision under perturbations.
-pub struct Disturbed {
+pub struct DisturbedCollision {
     /// Residuals at the undisturbed collision, as the first iteration takes them.
     pub first: DVector<f64>,
     /// The solution, and the inverse Jacobian there.
@@ -25,7 +25,7 @@ pub struct DisturbedMotion<'a, const N: usize> {
     pub integrals: &'a Integrals<N>,
 }
 
-/// Its depths or its speeds: without forces, what a unit of force at each node takes away, and the derivatives of both by the duration.
+/// Its depths or its speeds: without forces, the reduction by a unit of force at each node, and the derivatives of both by the duration.
 pub struct Linear {
     pub free: DVector<f64>,
     pub free_slope: DVector<f64>,
@@ -90,7 +90,7 @@ impl<const N: usize> DisturbedMotion<'_, N> {
 /// The equations of a collision without loss: the unknowns are depths.
 pub fn without_loss<const N: usize>(
     integrals: &Integrals<N>,
-) -> (DVector<f64>, impl Fn(Amounts) -> Disturbed) {
+) -> (DVector<f64>, impl Fn(Amounts) -> DisturbedCollision) {
     let motion = DisturbedMotion { duration: DURATION, integrals };
     let depths = DVector::from_fn(N + 1, |i, _| if i < N { integrals.depths[i] } else { 1.0 });
     let equations = move |amounts: Amounts, unknowns: &DVector<f64>| {
@@ -111,17 +111,17 @@ pub fn without_loss<const N: usize>(
         (residual, jacobian)
     };
     let undisturbed = |unknowns: &DVector<f64>| equations(UNDISTURBED, unknowns);
-    let start = Disturbed::solved(DVector::zeros(0), depths.clone(), undisturbed).unknowns;
+    let start = DisturbedCollision::solved(DVector::zeros(0), depths.clone(), undisturbed).unknowns;
     let begin = start.clone();
     let solve = move |amounts: Amounts| {
         let (first, _) = equations(amounts, &begin);
-        Disturbed::solved(first, depths.clone(), |unknowns| equations(amounts, unknowns))
+        DisturbedCollision::solved(first, depths.clone(), |unknowns| equations(amounts, unknowns))
     };
     (start, solve)
 }
 
-impl Disturbed {
-    /// By Newton's iteration from some unknowns.
+impl DisturbedCollision {
+    /// Solves by Newton's iteration from these unknowns.
     pub fn solved(
         first: DVector<f64>,
         mut unknowns: DVector<f64>,

@@ -1,4 +1,5 @@
-//! Contacts that lose energy, close to an undisturbed collision: of the same restitution at every speed, or of a χ next to that of the contact.
+//! Contacts that lose energy, close to an undisturbed collision: that of a law with the same restitution at every speed, or of one with a χ
+//! close to that of the contact.
 //!
 //! The force `f = ζ^(3/2) φ` depends on the speed of indentation, too, so the unknowns are the forces at the nodes and the duration σ. With the
 //! moments `m_k` of f the Volterra equation gives depth and speed at every node,
@@ -9,7 +10,7 @@
 //!
 //! and the residuals are `f - ζ^(3/2) φ(ζ^(5/2)/2, ż/w)` and the depth at the end. The iteration is that of contacts without loss.
 
-use super::bends::Added;
+use super::bends::BendContribution;
 use super::disturbed::UNDISTURBED;
 use super::lossy_rule::LossyRule;
 use super::newton::Extended;
@@ -17,7 +18,8 @@ use super::nodes::{Nodes, at_nodes, dot, product};
 use super::response::{Collisions, FREE};
 use super::rule::Rule;
 use super::solve::{
-    FLAT, Found, MAX_ITERATIONS, Pushed, error, free_terms, relative_position, relative_velocity, size,
+    FLAT, MAX_ITERATIONS, Solution, Workspace, change_size, estimated_error, free_terms, relative_position,
+    relative_velocity,
 };
 use super::unit_law::UnitLaw;
 use crate::motion::knot::Knot;
@@ -40,7 +42,7 @@ struct Contact<'a, const N: usize, const M: usize> {
     approach: Polynomial<FREE>,
     pace: Polynomial<FREE>,
     /// What bends of the force add to `z_free` and to `ż_free`, in the same units.
-    bent: [Added<'a>; 2],
+    bent: [BendContribution<'a>; 2],
 }
 
 /// The motion under forces at the nodes: depths and speeds there, and the depth at the end.
@@ -51,9 +53,9 @@ struct Motion<const M: usize> {
 }
 
 impl<const N: usize, const M: usize> Contact<'_, N, M> {
-    /// Takes the moments of a change of the forces (of this size, in units of the greatest force) away, as far as the change counts.
+    /// Subtracts the moments of a change of the forces (of this size, in units of the greatest force), as far as they are significant.
     #[inline(always)]
-    fn take(
+    fn subtract_moments(
         &self,
         change: &Nodes<M>,
         size: f64,
@@ -91,8 +93,8 @@ impl<const N: usize, const M: usize> Contact<'_, N, M> {
         let mut rate = at_nodes(&self.pace, free_terms(terms), &times);
         let mut without: Nodes<M> = std::array::from_fn(|i| mean_rate[i] * times[i]);
         let [deeper, faster] = &self.bent;
-        deeper.to_nodes(&mut without, &times, free_terms(terms));
-        faster.to_nodes(&mut rate, &times, free_terms(terms));
+        deeper.add_to_nodes(&mut without, &times, free_terms(terms));
+        faster.add_to_nodes(&mut rate, &times, free_terms(terms));
         Motion {
             depths: std::array::from_fn(|i| without[i] - pushed[i] * scale),
             speeds: std::array::from_fn(|i| rate[i] - slowed[i] * slowing),
@@ -102,7 +104,7 @@ impl<const N: usize, const M: usize> Contact<'_, N, M> {
 }
 
 impl Collisions {
-    /// As the iteration of contacts without loss, for those near the undisturbed collision of a rule.
+    /// The iteration as for contacts without loss, for those near the undisturbed collision of a rule with loss.
     #[inline(never)]
     pub(super) fn iterate_lossy<const N: usize, const M: usize>(
         &self,
@@ -110,8 +112,8 @@ impl Collisions {
         law: &UnitLaw,
         touch: &Knot<4>,
         to: f64,
-        Pushed { free, moments, last, bends, bend }: &mut Pushed<'_, M>,
-    ) -> Option<Found<M>> {
+        Workspace { free, moments, last, bends, bend }: &mut Workspace<'_, M>,
+    ) -> Option<Solution<M>> {
         let rule = &of.rule;
         let speed = self.side.sign() * (touch.y[3] - touch.y[1]);
         let depth = self.equations.greatest_depth(speed).powi(2);
@@ -132,7 +134,7 @@ impl Collisions {
         }
         let to_depth = self.side.sign() / depth;
         let bent = [relative_position(bend, to_depth), relative_velocity(bend, self.side.sign() / speed)]
-            .map(|one| bends.added(one));
+            .map(|one| bends.contribution(one));
         let contact =
             Contact { of: self, rule, terms, depth, speed, undisturbed, weights, approach, pace, bent };
         let mut unknowns: Extended<M> = (of.forces, 1.0);
@@ -143,9 +145,9 @@ impl Collisions {
             // At first the force is taken as linear: before the duration fits, depths near the end may be below zero.
             let residual: Nodes<M> = match iterations {
                 1 => {
-                    let apart = of.apart(law);
+                    let offset = of.force_offset(law);
                     std::array::from_fn(|i| {
-                        apart[i]
+                        offset[i]
                             + of.slopes[0][i] * (rule.depths[i] - depths[i])
                             + of.slopes[1][i] * (of.speeds[i] - speeds[i])
                     })
@@ -156,7 +158,7 @@ impl Collisions {
                 }
             };
             let (mut change, mut lengthening) = of.newton.change(amounts, &residual, end);
-            let size = size(&change, lengthening);
+            let size = change_size(&change, lengthening);
             if size.is_nan() || size >= 0.5 * before {
                 return None;
             }
@@ -169,7 +171,7 @@ impl Collisions {
                 lengthening -= longer;
             }
             unknowns = (std::array::from_fn(|i| unknowns.0[i] - change[i]), unknowns.1 - lengthening);
-            contact.take(&change, size, moments, last);
+            contact.subtract_moments(&change, size, moments, last);
             // Each step gains about as much as the last two, of which one may have gained more by chance; the first corrects what others cannot.
             let gain = size / before;
             let gains = if iterations > 2 { gain.max(last_gain) } else { gain };
@@ -177,9 +179,9 @@ impl Collisions {
                 let Motion { depths, .. } = contact.motion(unknowns.1, moments, last);
                 let duration = unknowns.1 * undisturbed;
                 let kink = of.kink * contact.bent[0].kink(duration, FLAT / N as f64);
-                let error = error(rule, &unknowns.0, of.tail, kink);
+                let error = estimated_error(rule, &unknowns.0, of.tail, kink);
                 let is_right = error <= self.rtol && touch.t + duration < to;
-                return is_right.then_some(Found { depth, terms, depths, duration, iterations });
+                return is_right.then_some(Solution { depth, terms, depths, duration, iterations });
             }
             (before, last_gain) = (size, gain);
         }
@@ -188,7 +190,7 @@ impl Collisions {
 
     /// Whether the force pushes throughout a contact that loses energy by the law of Hunt and Crossley: the speed of indentation
     /// `w` falls by it, and rises by other forces at most as fast as in the bounds over the contact.
-    pub(super) fn pushes(&self, touch: &Knot<4>, end: &[f64; 4], duration: f64) -> bool {
+    pub(super) fn force_stays_compressive(&self, touch: &Knot<4>, end: &[f64; 4], duration: f64) -> bool {
         let touch = self.equations.regularise(&touch.y);
         let depth = self.equations.greatest_depth(touch[1]);
         let over = self.equations.over_contact(&touch, depth, duration, self.amplitude);

@@ -1,11 +1,11 @@
 //! The undisturbed collision of a loss at the nodes of its rule, and the iteration from there: computed once for a loss.
 
-use super::disturbed::{Amounts, Disturbed, DisturbedMotion, Linear};
+use super::disturbed::{Amounts, DisturbedCollision, DisturbedMotion, Linear};
 use super::newton::Newton;
 use super::node_law::NodeLaw;
 use super::nodes::{Nodes, packed};
 use super::rule::{Integrals, Rule, TAIL};
-use super::undisturbed::{Lossy, leaning};
+use super::undisturbed::{Lossy, lossy_clock};
 use super::unit_law::UnitLaw;
 use nalgebra::{DMatrix, DVector};
 use retune_model::{Kept, RegularisedContact, Restoring};
@@ -18,7 +18,7 @@ static RESTORING: Kept<LossyRules> = Kept::new();
 /// The least restitution whose contacts are computed at once.
 const LEAST: f64 = 0.3;
 
-/// The χ whose undisturbed collisions are kept of the law of Hunt and Crossley: multiples of this, up to a restitution of 0.37.
+/// Undisturbed collisions by the law of Hunt and Crossley are cached for multiples of this χ, down to a restitution of 0.37.
 const STEP: f64 = 0.1;
 const STEPS: usize = 18;
 static DAMPING: [OnceLock<LossyRules>; STEPS] = [const { OnceLock::new() }; STEPS];
@@ -29,13 +29,13 @@ pub struct LossyRules {
     pub some: LossyRule<16, 4>,
     pub more: LossyRule<20, 5>,
     pub many: LossyRule<24, 6>,
-    /// The least tolerances at which common contacts pass the error estimate of all but the last.
+    /// The least tolerances at which common contacts pass the error estimate of each rule but the last.
     pub suffice: [f64; 3],
 }
 
 /// The error of the end of a contact over `tail^1.25`, for the rule of N nodes, as `TAIL`. With few nodes the inside of a contact with much
-/// loss has more error than its end; with much loss the branch point is near (see `leaning`), and but for the most nodes coefficients fall
-/// slowly.
+/// loss has more error than its end; with much loss the branch point is near (see `lossy_clock`), and coefficients fall slowly except with
+/// the most nodes.
 fn tail<const N: usize>(law: &UnitLaw) -> f64 {
     let slowly = match law {
         UnitLaw::Restoring(law) if N < 24 => (0.5 / law.restitution()).powi(4).max(1.0),
@@ -71,13 +71,13 @@ impl LossyRules {
         }
     }
 
-    /// Those of a restitution. Not inlined: rules are made in large arrays, which every run would have on its stack.
+    /// The rules of a restitution. Not inlined: they are built in large arrays, which every run would have on its stack.
     #[inline(never)]
     fn restoring(law: &Arc<Restoring>) -> Arc<Self> {
         RESTORING.of(law.restitution(), || Self::new(&UnitLaw::Restoring(Arc::clone(law))))
     }
 
-    /// Those of the kept χ next to one; none if that is beyond them.
+    /// The rules of the cached χ nearest to this one; `None` beyond the cached range.
     fn damping(chi: f64) -> Option<&'static Self> {
         let step = (chi / STEP).round();
         let kept = DAMPING.get(step as usize).filter(|_| step >= 0.0)?;
@@ -93,7 +93,7 @@ pub enum Loss {
 }
 
 impl Loss {
-    /// Of equations; none without loss, and for restitutions below 0.3, to which [`kink`] and [`tail`] do not reach.
+    /// The loss of these equations; `None` without loss, and for restitutions below 0.3, to which [`kink`] and [`tail`] do not reach.
     pub fn of(equations: &RegularisedContact) -> Option<Self> {
         match equations.restoring() {
             Some(law) if law.restitution() >= LEAST => {
@@ -131,16 +131,16 @@ pub struct LossyRule<const N: usize, const M: usize> {
     pub law: Option<NodeLaw<M>>,
     /// The error of the end of a contact over `tail^1.25`.
     pub tail: f64,
-    /// That of a bend that adds a cube of 1 to the depth.
+    /// The error by a bend that adds a cube of 1 to the depth.
     pub kink: f64,
-    /// The iteration from there.
+    /// The iteration from the undisturbed collision.
     pub newton: Newton<N, M>,
 }
 
 impl<const N: usize, const M: usize> LossyRule<N, M> {
     fn new(law: &UnitLaw, undisturbed: &Lossy) -> Self {
         let duration = undisturbed.duration;
-        let (rule, integrals) = Rule::new(leaning(law), undisturbed.force(law), undisturbed.depth());
+        let (rule, integrals) = Rule::new(lossy_clock(law), undisturbed.force(law), undisturbed.depth());
         let Integrals { depths, forces, .. } = &integrals;
         let speeds: [f64; N] = std::array::from_fn(|i| 1.0 - 1.25 * duration * integrals.whole(0, i));
         let slopes: [[f64; 2]; N] = std::array::from_fn(|i| force(law, depths[i], speeds[i]).1);
@@ -154,7 +154,7 @@ impl<const N: usize, const M: usize> LossyRule<N, M> {
             speeds: packed(&speeds),
             slopes: [0, 1].map(|by| packed::<N, M>(&slopes.map(|slopes| slopes[by]))),
             law: matches!(law, UnitLaw::Restoring(_)).then(|| NodeLaw::new(law, depths, &speeds)).flatten(),
-            // Of one restitution every contact has the same χ.
+            // With one restitution every contact has the same χ.
             newton: Newton::new(&start, if matches!(law, UnitLaw::Damping(_)) { 3 } else { 2 }, |amounts| {
                 equations.solve(amounts, &start, &speeds, &slopes)
             }),
@@ -164,7 +164,7 @@ impl<const N: usize, const M: usize> LossyRule<N, M> {
 
     /// By how much the forces of the undisturbed collision differ from those of another law.
     #[inline(always)]
-    pub fn apart(&self, law: &UnitLaw) -> Nodes<M> {
+    pub fn force_offset(&self, law: &UnitLaw) -> Nodes<M> {
         match law {
             UnitLaw::Restoring(_) => [f64x4::ZERO; M],
             UnitLaw::Damping(_) => {
@@ -193,16 +193,16 @@ struct Equations<'a, const N: usize> {
 }
 
 impl<const N: usize> Equations<'_, N> {
-    /// The collision under a amounts. The residuals with which it begins are those of a force that is linear about the undisturbed
-    /// collision: before the duration fits, depths near the end may be below zero.
+    /// The collision under these amounts. The first residuals are those of a force that is linear about the undisturbed collision: before
+    /// the duration fits, depths near the end may be below zero.
     fn solve(
         &self,
         amounts: Amounts,
         start: &DVector<f64>,
         speeds: &[f64; N],
         slopes: &[[f64; 2]; N],
-    ) -> Disturbed {
-        let (law, depths) = (self.law.beside(amounts[2]), &self.motion.integrals.depths);
+    ) -> DisturbedCollision {
+        let (law, depths) = (self.law.with_chi_offset(amounts[2]), &self.motion.integrals.depths);
         let linear = |i: usize, [z, w]: [f64; 2]| {
             let [by_z, by_w] = slopes[i];
             let (undisturbed, _) = force(&law, depths[i], speeds[i]);
@@ -211,7 +211,7 @@ impl<const N: usize> Equations<'_, N> {
         let (first, jacobian) = self.at(amounts, start, linear);
         let inverse = jacobian.try_inverse().expect("a collision is an isolated solution");
         let unknowns = start - inverse * &first;
-        Disturbed::solved(first, unknowns, |unknowns| {
+        DisturbedCollision::solved(first, unknowns, |unknowns| {
             self.at(amounts, unknowns, |_, [z, w]| force(&law, z, w))
         })
     }

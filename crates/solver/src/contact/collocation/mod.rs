@@ -8,10 +8,10 @@
 //! z(t) = z_free(t) - Σ_k g_k  ∫₀^t (t - s)^k / k! f(s) ds,      g_0 = 0, g_1 = κ
 //! ```
 //!
-//! The second line is a Volterra equation for `z` alone. A contact is short beside the linear motion, so a few terms are
-//! exact to rounding; and it is close to the undisturbed Hertz collision, so Newton's iteration only needs inverse Jacobians that
-//! are computed once a program (see `disturbed` and `newton`). One that loses energy is close to the undisturbed collision of its law
-//! (see `lossy`, `lossy_rule`, `unit_law` and `node_law`). A contact that is not of this kind is declined, and integrated step by step (see
+//! The second line is a Volterra equation for `z` alone. A contact is short compared with the linear motion, so a few terms are exact to
+//! rounding; and it is close to the undisturbed Hertz collision, so Newton's iteration only needs inverse Jacobians that are computed once
+//! per program (see `disturbed` and `newton`). One that loses energy is close to the undisturbed collision of its law (see `lossy`,
+//! `lossy_rule`, `unit_law` and `node_law`). A contact that is not of this kind is declined, and integrated step by step (see
 //! `regularised`).
 //!
 //! A record's force bends at its samples. The free motion takes every bend in exactly, and the contact force is nearly smooth there (see

@@ -23,7 +23,6 @@ pub(super) struct Collision<'a, const N: usize, const M: usize> {
     pub(super) touch: &'a Knot<4>,
     /// The motion without contact, and the terms of it and of the response to the force that are needed.
     pub(super) free: &'a Expansion<4, FREE>,
-    /// Where the force bends.
     pub(super) bends: &'a Bends,
     pub(super) free_terms: usize,
     pub(super) terms: usize,
@@ -45,7 +44,7 @@ impl<const N: usize, const M: usize> Collision<'_, N, M> {
     #[inline(always)]
     pub(super) fn lift_off(&self) -> [f64; 4] {
         let (mut end, mut power) = (self.free.at(self.duration), self.scale);
-        self.bends.to_state(&mut end, self.flow.bend(), self.duration);
+        self.bends.add_to_state(&mut end, self.flow.partner_response(), self.duration);
         for (moment, kick) in self.last.iter().zip(&self.of.kicks).take(self.terms + 1) {
             for c in 0..4 {
                 end[c] += kick[c] * power * moment;
@@ -61,7 +60,11 @@ impl<const N: usize, const M: usize> Collision<'_, N, M> {
     fn component(&self, c: usize) -> Nodes<M> {
         let times = self.rule.times.map(|time| time * self.duration);
         let mut nodes = at_nodes(&self.free.0[c], self.free_terms, &times);
-        self.bends.added(self.flow.bend().0[c]).to_nodes(&mut nodes, &times, self.free_terms);
+        self.bends.contribution(self.flow.partner_response().0[c]).add_to_nodes(
+            &mut nodes,
+            &times,
+            self.free_terms,
+        );
         let mut power = self.scale;
         for (moment, kick) in self.moments.iter().zip(&self.of.kicks).take(self.terms + 1) {
             for i in 0..M {
@@ -72,11 +75,11 @@ impl<const N: usize, const M: usize> Collision<'_, N, M> {
         nodes
     }
 
-    /// The pair of the force so many seconds after touch-down.
+    /// The force and its partner `elapsed` seconds after touch-down.
     #[inline(always)]
     pub(super) fn excitation(&self, elapsed: f64) -> Excitation {
         let pair = self.flow.excitation_after(self.touch.excitation, elapsed);
-        self.bends.bent(pair, self.flow.linear().frequency, elapsed)
+        self.bends.bent_excitation(pair, self.flow.linear().frequency, elapsed)
     }
 
     /// The state at one node, equal to [`Self::component`] to the last bit.
@@ -94,7 +97,7 @@ impl<const N: usize, const M: usize> Collision<'_, N, M> {
         each(|c| {
             let mut value = first_terms(&self.free.0[c].0, time);
             for &[bent, jump] in self.bends.all() {
-                value += first_terms(&self.flow.bend().0[c].0, (time - bent).max(0.0)) * jump;
+                value += first_terms(&self.flow.partner_response().0[c].0, (time - bent).max(0.0)) * jump;
             }
             let mut power = self.scale;
             for (moment, kick) in self.moments.iter().zip(&self.of.kicks).take(self.terms + 1) {
@@ -128,14 +131,14 @@ impl<const N: usize, const M: usize> Collision<'_, N, M> {
 
     /// Bounds on the motion over the whole contact.
     #[inline(always)]
-    fn over(&self) -> Option<OverContact> {
+    fn bounds_over_contact(&self) -> Option<OverContact> {
         let Collisions { equations, amplitude, .. } = self.of;
         let touch = equations.regularise(&self.touch.y);
         equations.over_contact(&touch, self.depth.sqrt(), self.duration, *amplitude)
     }
 
     fn growth(&self) -> Option<Growth<3>> {
-        self.over().map(|over| self.of.equations.growth_over_contact(&over))
+        self.bounds_over_contact().map(|over| self.of.equations.growth_over_contact(&over))
     }
 
     fn knot(&self, knot: usize) -> Knot<4> {
@@ -191,8 +194,8 @@ impl<const N: usize, const M: usize> Collision<'_, N, M> {
             from,
             slope,
             length,
-            // Nodes are about as far apart as the steps that `rtol` asks for, and farther near the ends. Where energy is lost a contact has more of
-            // them: one step is enough but for the last digits.
+            // Nodes are about as far apart as the steps that `rtol` asks for, and farther near the ends. Where energy is lost a contact has
+            // more of them: one step is enough except at the tightest tolerances.
             steps: if self.of.loss.is_some() && self.of.rtol >= 1e-11 { 1 } else { 2 },
             ends,
             energy: f64::INFINITY,
@@ -227,7 +230,7 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
     #[inline(always)]
     fn rise(&self, form: &Form<4>) -> f64 {
         let (kick, hertz_rate) = (&self.of.kicks[0], self.of.equations.hertz_rate());
-        self.over().map_or(f64::INFINITY, |over| form.rise_in_contact(kick, hertz_rate, &over))
+        self.bounds_over_contact().map_or(f64::INFINITY, |over| form.rise_in_contact(kick, hertz_rate, &over))
     }
 
     fn second_derivative(&self, form: &Form<4>) -> f64 {
@@ -243,7 +246,7 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
     }
 
     /// The segment between two knots is integrated from the first of them, and cut where the force bends.
-    fn show(&self, piece: usize, see: &mut dyn FnMut(Part<'_, 4>)) {
+    fn show(&self, piece: usize, visit: &mut dyn FnMut(Part<'_, 4>)) {
         let [mut begin, end] = [self.knot(piece), self.knot(piece + 1)];
         let [mut now, last] = [piece, piece + 1].map(|knot| self.time(knot) * self.duration);
         let mut from = self.of.equations.regularise(&begin.y);
@@ -262,9 +265,9 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
             let mut at = knot(&equations, begin.t, &bent);
             if theta > 0.0 {
                 let before = self.piece(&equations, (&from, &derivative), theta, [begin, at]);
-                see(Part::Segment(&before));
+                visit(Part::Segment(&before));
             }
-            see(Part::Seam);
+            visit(Part::Discontinuity);
             at.excitation[1] += jump;
             bent[TIME] = 0.0;
             (begin, now, from, length) = (at, time, bent, length - theta);
@@ -276,7 +279,7 @@ impl<const N: usize, const M: usize> Path<4> for Collision<'_, N, M> {
         if self.of.loss.is_some() && self.of.rtol < 1e-10 {
             rest.meet_end();
         }
-        see(Part::Segment(&rest));
+        visit(Part::Segment(&rest));
     }
 
     fn linearised(&self, loss: bool) -> LinearContact {

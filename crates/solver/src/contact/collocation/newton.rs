@@ -1,4 +1,4 @@
-//! Newton's iteration for collisions that are nearly undisturbed, with inverse Jacobians computed once a program.
+//! Newton's iteration for collisions that are nearly undisturbed, with inverse Jacobians computed once per program.
 //!
 //! The unknowns are the depths `ζ` at the nodes and the duration `σ` in units of the undisturbed collision's, the residuals those
 //! of the motion at the nodes and at the end. The two perturbations that matter most are a steady acceleration `α` and a drag `β`,
@@ -11,7 +11,7 @@
 //! the inverse Jacobian corrected for them to first order: instead of one and a half digits an iteration gains three. Where contacts lose
 //! energy by the law of Hunt and Crossley, the difference of their χ from that of the undisturbed collision is a third.
 
-use super::disturbed::{Amounts, Disturbed, UNDISTURBED};
+use super::disturbed::{Amounts, DisturbedCollision, UNDISTURBED};
 use super::nodes::{Nodes, dot, packed, product};
 use nalgebra::{DMatrix, DVector};
 use wide::f64x4;
@@ -70,14 +70,14 @@ struct Perturbation<const N: usize, const M: usize> {
 const UNITS: Amounts = [0.05, 0.02, 0.02];
 
 impl<const N: usize, const M: usize> Newton<N, M> {
-    /// Prepares the iteration from the unknowns of the undisturbed collision and the solutions under so many of the perturbations.
-    pub fn new(start: &DVector<f64>, count: usize, solve: impl Fn(Amounts) -> Disturbed) -> Self {
+    /// Prepares the iteration from the unknowns of the undisturbed collision and the solutions under the first `count` perturbations.
+    pub fn new(start: &DVector<f64>, count: usize, solve: impl Fn(Amounts) -> DisturbedCollision) -> Self {
         let undisturbed = solve(UNDISTURBED).inverse;
         // The change left after the first iteration, the change in it, and the converged inverse Jacobian.
         let with = |units: &[(usize, f64)]| {
             let mut amounts = UNDISTURBED;
             units.iter().for_each(|&(of, unit)| amounts[of] = unit * UNITS[of]);
-            let Disturbed { first, unknowns, inverse } = solve(amounts);
+            let DisturbedCollision { first, unknowns, inverse } = solve(amounts);
             let change = -&undisturbed * first;
             (unknowns - start - &change, change, inverse)
         };
@@ -91,7 +91,7 @@ impl<const N: usize, const M: usize> Newton<N, M> {
             ([a, b], both - &bends[a] - &bends[b])
         });
         let second_order = bends.iter().cloned().enumerate().map(|(of, bend)| ([of, of], bend)).chain(mixed);
-        // Least squares: (CᵀC)⁻¹ Cᵀ; a change is what is subtracted.
+        // Least squares: (CᵀC)⁻¹ Cᵀ; changes are subtracted.
         let normal = (changes.transpose() * &changes).try_inverse().expect("the perturbations differ");
         let rows = -(normal * changes.transpose());
         let perturbation = |c: usize| Perturbation {

@@ -9,13 +9,12 @@ use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 use wide::f64x4;
 
-/// Terms of a polynomial.
 const TERMS: usize = 12;
-/// The widest range of x, to both sides, by how much it is narrowed until the terms suffice, and how often at most.
+/// The largest range of x to either side, the factor by which it is narrowed until the terms suffice, and the largest number of narrowings.
 const WIDEST: f64 = 0.3;
 const NARROWER: f64 = 0.8;
 const NARROWED: usize = 20;
-/// Error of a polynomial that suffices.
+/// Largest error of a polynomial that suffices.
 const ROUNDING: f64 = 2e-15;
 
 /// The polynomials, in a variable that runs from -1 to 1 over each range.
@@ -27,7 +26,7 @@ pub struct NodeLaw<const M: usize> {
 }
 
 impl<const M: usize> NodeLaw<M> {
-    /// About the depths and speeds of an undisturbed collision; none of a law whose own rounding is larger than that of the polynomials.
+    /// About the depths and speeds of an undisturbed collision; `None` for a law whose own rounding is larger than that of the polynomials.
     pub fn new<const N: usize>(law: &UnitLaw, depths: &[f64; N], speeds: &[f64; N]) -> Option<Self> {
         let factor = |x: f64| law.push(0.5 * (1.0 - x) * (1.0 + x), x);
         let piece = |i: usize| {
@@ -47,7 +46,7 @@ impl<const M: usize> NodeLaw<M> {
         })
     }
 
-    /// The factor at `S = z^(5/2)/2` and `ż`; none where a node is out of its range.
+    /// The factor at `S = z^(5/2)/2` and `ż`; `None` where a node is out of its range.
     #[inline(always)]
     pub fn push(&self, s: &Nodes<M>, w: &Nodes<M>) -> Option<Nodes<M>> {
         let mut at = [f64x4::ZERO; M];
@@ -55,7 +54,7 @@ impl<const M: usize> NodeLaw<M> {
         for i in 0..M {
             let x = w[i] / (w[i] * w[i] + s[i] * 2.0).sqrt();
             at[i] = (x - self.middle[i]) * self.scale[i];
-            // Of a NaN this is not true either.
+            // False for a NaN, too.
             is_within &= at[i].abs().simd_le(f64x4::ONE).all();
         }
         if !is_within {
@@ -89,7 +88,7 @@ impl Piece {
         Self { middle, half, terms: std::array::from_fn(|k| terms[k]) }
     }
 
-    /// The largest of what is left between nodes.
+    /// The largest error between nodes.
     fn error(&self, factor: &impl Fn(f64) -> f64) -> f64 {
         let left = |i: usize| {
             let at = -1.0 + i as f64 / (2 * TERMS) as f64;

@@ -8,15 +8,13 @@ use crate::motion::linearised::MOMENTS;
 use crate::system::LinearSystem;
 use retune_model::{Coupled, RegularisedContact, Side};
 
-/// The numbers of all contacts with one wall.
+/// The data of all contacts with one wall.
 pub struct Collisions {
-    /// The regularised equations.
     pub equations: RegularisedContact,
-    /// What they lose.
+    /// Their loss.
     pub loss: Option<Loss>,
-    /// The wall.
     pub side: Side,
-    /// Its position relative to the structure, m.
+    /// Position of that wall relative to the structure, m.
     pub wall: f64,
     /// `A^k b`.
     pub kicks: [[f64; 4]; MOMENTS],
@@ -30,7 +28,7 @@ pub struct Collisions {
     pub amplitude: f64,
 }
 
-/// The duration of any collision over that of the undisturbed one is expected to be less: where the force bends later, it does not matter.
+/// The duration of any collision relative to the undisturbed one is expected to be less: later bends of the force are ignored.
 const LONGEST: f64 = 2.0;
 
 /// Blocks of four terms of the free motion's Taylor series, and the largest `rate t` for which they are exact:
@@ -39,7 +37,7 @@ pub const FREE: usize = 3;
 const BRIEF: f64 = 0.3;
 
 impl Collisions {
-    /// When a contact that begins at `touch` is over at the latest, s, if it is nearly an undisturbed collision.
+    /// The latest end (s) of a contact that begins at `touch`, if it is nearly an undisturbed collision.
     pub fn latest_end(&self, touch: &Knot<4>) -> f64 {
         let speed = self.side.sign() * (touch.y[3] - touch.y[1]);
         touch.t + LONGEST * DURATION * self.equations.greatest_depth(speed).powi(2) / speed

@@ -29,23 +29,23 @@ pub struct Rule<const N: usize, const M: usize> {
     pub rates: Nodes<M>,
     /// Depths of the undisturbed collision at the nodes.
     pub depths: Nodes<M>,
-    /// The same at the end of the contact, `τ = 1`, for each `j`.
+    /// The moments at the end of the contact, `τ = 1`, for each `j`.
     pub last: [Nodes<M>; MOMENTS],
     /// Moments of the undisturbed collision's force at the nodes.
     pub undisturbed: [Nodes<M>; MOMENTS],
-    /// The same at the end.
+    /// Moments of the undisturbed collision's force at the end.
     pub undisturbed_last: [f64; MOMENTS],
     /// `running[j]` at node `i`: the contribution of the value at node `j` of a smooth `g` to `∫₀^u g du` there.
     pub running: [Nodes<M>; N],
-    /// The same at `u = 1`, for each `j`.
+    /// That integral at `u = 1`, for each `j`.
     pub whole: Nodes<M>,
     /// Rows that give the two highest Legendre coefficients of `c`, from the force `ζ^(3/2) c` at the nodes.
     pub tails: [Nodes<M>; 2],
 }
 
 impl<const N: usize, const M: usize> Rule<N, M> {
-    /// Computes the rule for a collision with this force and these depths over the clock, with its integrals. It takes milliseconds: a program
-    /// does it once for a law.
+    /// Computes the rule for a collision with this force and these depths over the clock, with its integrals. It takes milliseconds: a
+    /// program does it once for each law.
     pub fn new(
         clock: impl Fn(f64) -> [f64; 2],
         force: impl Fn(f64) -> f64,
@@ -103,7 +103,7 @@ impl<const N: usize, const M: usize> Rule<N, M> {
     }
 }
 
-/// What a rule is made of, number by number.
+/// The entries of a rule as single numbers.
 pub struct Integrals<const N: usize> {
     pub times: [f64; N],
     pub depths: [f64; N],

@@ -23,10 +23,10 @@ static FEW: LazyLock<Lossless<8, 2>> = LazyLock::new(lossless);
 static SOME: LazyLock<Lossless<12, 3>> = LazyLock::new(lossless);
 static MANY: LazyLock<Lossless<16, 4>> = LazyLock::new(lossless);
 
-/// That of contacts in which the force bends so much that the others do not suffice.
+/// The rule for contacts in which the force bends so much that the others do not suffice.
 static BENT: LazyLock<Lossless<24, 6>> = LazyLock::new(lossless);
 
-/// A rule for contacts that lose nothing, and their iteration.
+/// A rule for contacts without loss, and their iteration.
 pub(super) type Lossless<const N: usize, const M: usize> = (Rule<N, M>, Newton<N, M>);
 
 pub(super) fn lossless<const N: usize, const M: usize>() -> Lossless<N, M> {
@@ -43,11 +43,11 @@ pub(super) fn lossless<const N: usize, const M: usize>() -> Lossless<N, M> {
 pub(super) const KINK: [f64; 5] = [5e-5, 1.15e-5, 4.4e-6, 1.9e-6, 1e-6];
 pub(super) const FLAT: f64 = 1.6;
 
-/// A contact that is not undisturbed may have so many times as much: a rule of thumb, whose failures the test
+/// Factor on this error for a contact that is not undisturbed: a rule of thumb, whose failures the test
 /// `reference_contacts_across_samples_agree_with_contacts_step_by_step` counts (`just lab test-bends`).
 const DISTURBED: f64 = 2.0;
 
-/// Most iterations: one that has not converged by then converges too slowly.
+/// Limit on iterations: one that has not converged by then converges too slowly.
 pub(super) const MAX_ITERATIONS: u32 = 16;
 
 impl Collisions {
@@ -70,25 +70,25 @@ impl Collisions {
         // At these tolerances common contacts pass the error estimate of the rule. Inside a contact Gauss's nodes gain nothing, but the
         // motion there is still accurate enough for the energy of the much heavier structure.
         if self.rtol >= 1e-7
-            && let Some(end) = self.by(&FEW, flow, &touch, to, bends, observer)
+            && let Some(end) = self.collide_with(&FEW, flow, &touch, to, bends, observer)
         {
             return Some(end);
         }
         if self.rtol >= 1e-9
-            && let Some(end) = self.by(&SOME, flow, &touch, to, bends, observer)
+            && let Some(end) = self.collide_with(&SOME, flow, &touch, to, bends, observer)
         {
             return Some(end);
         }
-        let end = self.by(&MANY, flow, &touch, to, bends, observer);
+        let end = self.collide_with(&MANY, flow, &touch, to, bends, observer);
         if end.is_some() || bends.all().is_empty() {
             return end;
         }
-        self.by(&BENT, flow, &touch, to, bends, observer)
+        self.collide_with(&BENT, flow, &touch, to, bends, observer)
     }
 
-    /// The same by one rule.
+    /// [`Self::collide`] by one rule.
     #[inline(always)]
-    fn by<const N: usize, const M: usize>(
+    fn collide_with<const N: usize, const M: usize>(
         &self,
         rule: &LazyLock<Lossless<N, M>>,
         flow: &Flow<4>,
@@ -98,10 +98,17 @@ impl Collisions {
         observer: &mut (impl Observer<4> + ?Sized),
     ) -> Option<(Knot<4>, u64)> {
         let rule = &**rule;
-        self.solve(&rule.0, |pushed| self.iterate(rule, touch, to, pushed), flow, touch, bends, observer)
+        self.solve(
+            &rule.0,
+            |workspace| self.iterate(rule, touch, to, workspace),
+            flow,
+            touch,
+            bends,
+            observer,
+        )
     }
 
-    /// The same of a contact that loses energy.
+    /// [`Self::collide`] for a contact that loses energy.
     #[inline(never)]
     fn collide_lossy(
         &self,
@@ -130,7 +137,7 @@ impl Collisions {
         self.solve_lossy((many, &law), flow, &touch, to, bends, observer)
     }
 
-    /// The same by one rule.
+    /// [`Self::collide_lossy`] by one rule.
     #[inline(always)]
     fn solve_lossy<const N: usize, const M: usize>(
         &self,
@@ -141,7 +148,7 @@ impl Collisions {
         bends: &Bends,
         observer: &mut (impl Observer<4> + ?Sized),
     ) -> Option<(Knot<4>, u64)> {
-        let iterate = |pushed: &mut Pushed<'_, M>| self.iterate_lossy(of, law, touch, to, pushed);
+        let iterate = |workspace: &mut Workspace<'_, M>| self.iterate_lossy(of, law, touch, to, workspace);
         self.solve(&of.rule, iterate, flow, touch, bends, observer)
     }
 
@@ -150,31 +157,31 @@ impl Collisions {
     fn solve<const N: usize, const M: usize>(
         &self,
         rule: &Rule<N, M>,
-        iterate: impl FnOnce(&mut Pushed<'_, M>) -> Option<Found<M>>,
+        iterate: impl FnOnce(&mut Workspace<'_, M>) -> Option<Solution<M>>,
         flow: &Flow<4>,
         touch: &Knot<4>,
         bends: &Bends,
         observer: &mut (impl Observer<4> + ?Sized),
     ) -> Option<(Knot<4>, u64)> {
-        let mut pushed = Pushed {
+        let mut workspace = Workspace {
             free: flow.expand(touch.excitation, &touch.y),
             moments: rule.undisturbed,
             last: rule.undisturbed_last,
             bends,
-            bend: flow.bend(),
+            bend: flow.partner_response(),
         };
-        let Found { depth, terms, depths, duration, iterations } = iterate(&mut pushed)?;
+        let Solution { depth, terms, depths, duration, iterations } = iterate(&mut workspace)?;
         let mut collision = Collision {
             of: self,
             rule,
             flow,
             touch,
-            free: &pushed.free,
+            free: &workspace.free,
             bends,
             free_terms: free_terms(terms),
             terms,
-            moments: &pushed.moments,
-            last: &pushed.last,
+            moments: &workspace.moments,
+            last: &workspace.last,
             scale: duration * depth * depth.sqrt(),
             duration,
             depth,
@@ -182,7 +189,7 @@ impl Collisions {
             end: [0.0; 4],
         };
         collision.end = collision.lift_off();
-        if self.equations.may_part() && !self.pushes(touch, &collision.end, duration) {
+        if self.equations.may_part() && !self.force_stays_compressive(touch, &collision.end, duration) {
             return None;
         }
         observer.path(&collision);
@@ -191,16 +198,16 @@ impl Collisions {
         Some((end, u64::from(iterations) * N as u64))
     }
 
-    /// Newton's iteration for a contact from the moments of the undisturbed force, in `pushed`, to its own; `None` if it is not of the kind
-    /// that the rule is for. It is compiled once for a rule, not once more for every observer.
+    /// Newton's iteration for a contact from the moments of the undisturbed force, in the workspace, to its own; `None` if it is not of the
+    /// kind that the rule is for. It is compiled once for a rule, not once more for every observer.
     #[inline(never)]
     fn iterate<const N: usize, const M: usize>(
         &self,
         (rule, newton): &Lossless<N, M>,
         touch: &Knot<4>,
         to: f64,
-        Pushed { free, moments, last, bends, bend }: &mut Pushed<'_, M>,
-    ) -> Option<Found<M>> {
+        Workspace { free, moments, last, bends, bend }: &mut Workspace<'_, M>,
+    ) -> Option<Solution<M>> {
         let speed = self.side.sign() * (touch.y[3] - touch.y[1]);
         let depth = self.equations.greatest_depth(speed).powi(2);
         let undisturbed = DURATION * depth / speed;
@@ -212,7 +219,7 @@ impl Collisions {
         let [x1, _, x2, _] = free.0;
         let to_depth = self.side.sign() / depth;
         let approach = Polynomial::<FREE>(std::array::from_fn(|b| (x2.0[b] - x1.0[b]) * to_depth)).over_s();
-        let bent = bends.added(relative_position(bend, to_depth));
+        let bent = bends.contribution(relative_position(bend, to_depth));
         let (mut depths, mut stretch) = (rule.depths, 1.0);
         let mut amounts = UNDISTURBED;
         let (mut before, mut iterations): (f64, u32) = (1.0, 0);
@@ -229,7 +236,7 @@ impl Collisions {
             let times = rule.times.map(|time| time * duration);
             let mean_rate = at_nodes(&approach, free_terms(terms) - 1, &times);
             let mut without: Nodes<M> = std::array::from_fn(|i| mean_rate[i] * times[i]);
-            bent.to_nodes(&mut without, &times, free_terms(terms));
+            bent.add_to_nodes(&mut without, &times, free_terms(terms));
             let free_last = approach.at(duration) * duration + bent.at(duration);
             let residual: Nodes<M> = std::array::from_fn(|i| depths[i] - without[i] + pushed[i] * scale);
             let (change, lengthening) = newton.change(amounts, &residual, scale * pushed_last - free_last);
@@ -238,7 +245,7 @@ impl Collisions {
             }
             stretch -= lengthening;
             iterations += 1;
-            let size = size(&change, lengthening);
+            let size = change_size(&change, lengthening);
             // Each iteration gains about as much as the last: an error of about `size² / before` is left.
             let settled = size * size <= 0.3 * self.rtol * before;
             if size.is_nan() || size >= 0.5 * before || iterations == MAX_ITERATIONS {
@@ -264,22 +271,23 @@ impl Collisions {
         };
         let duration = stretch * undisturbed;
         let kink = KINK[N / 4 - 2] * bent.kink(duration, FLAT / N as f64);
-        let error = error(rule, &force, TAIL[(N / 4 - 2).min(TAIL.len() - 1)], kink);
+        let error = estimated_error(rule, &force, TAIL[(N / 4 - 2).min(TAIL.len() - 1)], kink);
         let is_right = error <= self.rtol && touch.t + duration < to;
-        is_right.then_some(Found { depth, terms, depths, duration, iterations })
+        is_right.then_some(Solution { depth, terms, depths, duration, iterations })
     }
 }
 
-/// The largest of a change at the nodes and of the duration.
+/// The largest magnitude of a change at the nodes and of the duration.
 #[inline(always)]
-pub(super) fn size<const M: usize>(change: &Nodes<M>, lengthening: f64) -> f64 {
+pub(super) fn change_size<const M: usize>(change: &Nodes<M>, lengthening: f64) -> f64 {
     let largest = change.iter().fold(f64x4::splat(lengthening).abs(), |size, c| size.max(c.abs()));
     largest.to_array().into_iter().fold(0.0, f64::max)
 }
 
-/// The estimated error of a contact with these forces at the nodes, and with bends that cost so much in an undisturbed collision.
+/// The estimated error of a contact with these forces at the nodes, and with bends that would cause the error `kink` in an undisturbed
+/// collision.
 #[inline(always)]
-pub(super) fn error<const N: usize, const M: usize>(
+pub(super) fn estimated_error<const N: usize, const M: usize>(
     rule: &Rule<N, M>,
     force: &Nodes<M>,
     share: f64,
@@ -295,14 +303,14 @@ pub(super) fn relative_position(bend: &Expansion<4>, scale: f64) -> Polynomial<B
     Polynomial(std::array::from_fn(|b| (x2.0[b] - x1.0[b]) * scale))
 }
 
-/// That of its rate, `scale (v2 - v1)`.
+/// The response of its rate, `scale (v2 - v1)`.
 pub(super) fn relative_velocity(bend: &Expansion<4>, scale: f64) -> Polynomial<BLOCKS> {
     let [_, v1, _, v2] = bend.0;
     Polynomial(std::array::from_fn(|b| (v2.0[b] - v1.0[b]) * scale))
 }
 
 /// The motion without contact, and the moments of the force at the nodes and at lift-off.
-pub(super) struct Pushed<'a, const M: usize> {
+pub(super) struct Workspace<'a, const M: usize> {
     pub free: Expansion<4, FREE>,
     pub moments: [Nodes<M>; MOMENTS],
     pub last: [f64; MOMENTS],
@@ -311,8 +319,7 @@ pub(super) struct Pushed<'a, const M: usize> {
     pub bend: &'a Expansion<4>,
 }
 
-/// What the iteration has found.
-pub(super) struct Found<const M: usize> {
+pub(super) struct Solution<const M: usize> {
     /// Greatest depth of the undisturbed collision, m.
     pub depth: f64,
     /// Terms of the response to the force that are needed.

@@ -1,4 +1,4 @@
-//! Contacts computed at once beside the same contacts followed step by step.
+//! Contacts computed at once compared with the same contacts followed step by step.
 
 mod bends;
 mod kinks;
@@ -58,7 +58,7 @@ fn step_by_step(system: &Coupled, side: Side, touch: &Knot<4>) -> Knot<4> {
     let (limits, mut work) = ((system, 1e-13, budget, false), Work::default());
     let mut from = *touch;
     loop {
-        // It begins anew where the force bends.
+        // It restarts where the force bends.
         let to = system.bare().stretch(from.t).map_or(1e9, |stretch| stretch.to.min(1e9));
         match integrate(
             equations.clone(),
@@ -80,7 +80,8 @@ fn step_by_step(system: &Coupled, side: Side, touch: &Knot<4>) -> Knot<4> {
     }
 }
 
-/// How far a contact that is computed at once is from the same followed step by step, in shares of the touch-down speed and of the duration.
+/// The distance of a contact that is computed at once from the same contact followed step by step, in shares of the touch-down speed and of
+/// the duration.
 fn at_once(system: &Coupled, side: Side, touch: Knot<4>, rtol: f64) -> Option<f64> {
     let flow = Flow::new(LinearSystem::linear(system), 1.0);
     let collisions = Collisions::new(system, side, &flow, rtol);
@@ -92,8 +93,8 @@ fn at_once(system: &Coupled, side: Side, touch: Knot<4>, rtol: f64) -> Option<f6
     Some(velocity.max(duration))
 }
 
-/// How many of so many contacts drawn at random are computed at once, with these changes to their numbers, and how far one is from steps at
-/// most.
+/// How many of `count` contacts drawn at random, with these changes to their numbers, are computed at once, and their largest distance from
+/// steps.
 fn drawn(count: usize, rtol: f64, change: impl Fn(Numbers) -> Numbers) -> (usize, f64) {
     let mut draw = Draw(1);
     let (mut taken, mut worst) = (0, 0.0_f64);
@@ -117,7 +118,8 @@ fn reference_contacts_at_once_agree_with_contacts_step_by_step() {
     }
 }
 
-/// The same with one restitution at every speed. The stronger the loss, the farther from the undisturbed collision a disturbance leads.
+/// The comparison with one restitution at every speed. The stronger the loss, the farther from the undisturbed collision a disturbance
+/// leads.
 #[test]
 fn reference_lossy_contacts_at_once_agree_with_contacts_step_by_step() {
     for (e, rtol, taken_at_least) in [
@@ -142,7 +144,7 @@ fn reference_lossy_contacts_at_once_agree_with_contacts_step_by_step() {
     }
 }
 
-/// The same by the law of Hunt and Crossley, whose χ grows with the touch-down speed: to a restitution of 0.37.
+/// The comparison by the law of Hunt and Crossley, whose χ grows with the touch-down speed: down to a restitution of 0.37.
 #[test]
 fn reference_damped_contacts_at_once_agree_with_contacts_step_by_step() {
     for (lambda, rtol, taken_at_least) in [
@@ -160,7 +162,7 @@ fn reference_damped_contacts_at_once_agree_with_contacts_step_by_step() {
     }
 }
 
-/// An iteration once took one step that gained much by chance for convergence: an error of 34 `rtol`, in one of 1600 contacts.
+/// An iteration once mistook one step that gained much by chance for convergence: an error of 34 `rtol`, in one of 1600 contacts.
 #[test]
 fn regress_one_lucky_step_is_no_convergence() {
     for (e, rtol) in [(0.9, 1e-8), (0.9, 1e-9), (0.75, 1e-9), (0.75, 1e-10)] {
@@ -169,7 +171,7 @@ fn regress_one_lucky_step_is_no_convergence() {
     }
 }
 
-/// Keeps the largest distance of what it sees from the motion followed step by step.
+/// Keeps the largest distance of the observed motion from the motion followed step by step.
 struct Compare<'a> {
     system: &'a Coupled,
     side: Side,
@@ -232,7 +234,8 @@ fn reference_the_inside_of_a_contact_is_what_stepping_finds() {
     }
 }
 
-/// A contact at this tolerance, seen in at least so many pieces, leaves the motion in steps by at most a share of the touch-down speed.
+/// A contact at this tolerance, seen in at least `pieces` pieces, deviates from the motion in steps by at most the share `allowed` of the
+/// touch-down speed.
 fn inside(numbers: Numbers, rtol: f64, pieces: usize, allowed: f64) {
     let system = numbers.coupled();
     let flow = Flow::new(LinearSystem::linear(&system), 1.0);

@@ -16,20 +16,21 @@ pub fn clock(u: f64) -> [f64; 2] {
     [u * u * (3.0 - 2.0 * u), 6.0 * u * (1.0 - u)]
 }
 
-/// Where, in terms of the other clock, that of lossy collisions runs slowest, and over which width: those by which many contacts drawn at
-/// random fit few nodes, and their insides with them.
-fn slow(law: &UnitLaw) -> [f64; 2] {
+/// Where, in terms of [`clock`], the clock of lossy collisions runs slowest, and the width of that region: chosen so that few nodes suffice
+/// for most contacts drawn at random, also inside them.
+fn slowest_point(law: &UnitLaw) -> [f64; 2] {
     match law {
         UnitLaw::Restoring(law) => [0.355 + 0.16 * law.restitution(), 0.21],
         UnitLaw::Damping(_) => [0.42, 0.24],
     }
 }
 
-/// `τ` and `dτ/du` of the clock of lossy collisions. Once one is disturbed the law of a restitution has a branch point (`D = 0`) near the first
-/// half of the contact, from `0.20 ± 0.16 i` of the other clock for e = 0.3 to `0.32 ± 0.30 i` for 0.9 (`tests/reference/branch_point.py`). A
-/// hyperbolic sine moves a pair of singularities as far away as can be (T. W. Tee and L. N. Trefethen, SIAM J. Sci. Comput. 28 (2006) 1798).
-pub fn leaning(law: &UnitLaw) -> impl Fn(f64) -> [f64; 2] + Copy + use<> {
-    let [place, width] = slow(law);
+/// `τ` and `dτ/du` of the clock of lossy collisions. Once one is disturbed the law of a restitution has a branch point (`D = 0`) near the
+/// first half of the contact, from `0.20 ± 0.16 i` of [`clock`] for e = 0.3 to `0.32 ± 0.30 i` for 0.9 (`tests/reference/branch_point.py`).
+/// A hyperbolic sine moves a pair of singularities as far away as can be (T. W. Tee and L. N. Trefethen, SIAM J. Sci. Comput. 28 (2006)
+/// 1798).
+pub fn lossy_clock(law: &UnitLaw) -> impl Fn(f64) -> [f64; 2] + Copy + use<> {
+    let [place, width] = slowest_point(law);
     let [low, high] = [-place / width, (1.0 - place) / width].map(f64::asinh);
     move |u| {
         let at = low + (high - low) * u;
@@ -38,7 +39,7 @@ pub fn leaning(law: &UnitLaw) -> impl Fn(f64) -> [f64; 2] + Copy + use<> {
     }
 }
 
-/// Nodes on which the undisturbed collision is kept.
+/// Nodes on which the undisturbed collision is stored.
 const NODES: usize = 40;
 
 /// The force `ζ^(3/2)` of the undisturbed collision as a function of the clock, to rounding: `u³ (1 - u)³` times a polynomial
@@ -48,13 +49,13 @@ pub fn undisturbed_force() -> impl Fn(f64) -> f64 {
     // In units of Z and Z/w the regularised collision is q' = w/2, w' = -(5/4) q⁴, t' = q (see `retune_model::RegularisedContact`).
     let slope = |&[q, w, _]: &[f64; 3]| [0.5 * w, -1.25 * q.powi(4), q];
     // The collision is symmetric in time.
-    let mut values: Vec<f64> = along(slope, DURATION, clock, &nodes[..NODES / 2])
+    let mut values: Vec<f64> = states_at(slope, DURATION, clock, &nodes[..NODES / 2])
         .iter()
         .zip(&nodes)
-        .map(|([q, ..], &u)| q.powi(3) / ends(u))
+        .map(|([q, ..], &u)| q.powi(3) / end_factor(u))
         .collect();
     values.extend(values.clone().into_iter().rev());
-    interpolated(nodes, values, ends)
+    interpolated(nodes, values, end_factor)
 }
 
 /// The undisturbed collision of a law of loss.
@@ -66,19 +67,19 @@ pub struct Lossy {
 }
 
 impl Lossy {
-    /// Of a law.
+    /// The undisturbed collision by a law.
     pub fn new(law: &UnitLaw) -> Self {
         let slope = |&[q, w, _]: &[f64; 3]| [0.5 * w, -1.25 * q.powi(4) * law.push(0.5 * q.powi(5), w), q];
         let duration = lift_off(slope);
         let (nodes, _) = gauss(NODES, 0);
-        Self { duration, states: along(slope, duration, leaning(law), &nodes), nodes }
+        Self { duration, states: states_at(slope, duration, lossy_clock(law), &nodes), nodes }
     }
 
     /// The force over the clock, in units of `K Z^(3/2)`.
     pub fn force(&self, law: &UnitLaw) -> impl Fn(f64) -> f64 + use<> {
         let force = |&[q, w, _]: &[f64; 3]| q.powi(3) * law.push(0.5 * q.powi(5), w);
-        let values = self.states.iter().zip(&self.nodes).map(|(y, &u)| force(y) / ends(u)).collect();
-        interpolated(self.nodes.clone(), values, ends)
+        let values = self.states.iter().zip(&self.nodes).map(|(y, &u)| force(y) / end_factor(u)).collect();
+        interpolated(self.nodes.clone(), values, end_factor)
     }
 
     /// The depth over the clock, in units of Z.
@@ -90,7 +91,7 @@ impl Lossy {
     }
 }
 
-fn ends(u: f64) -> f64 {
+fn end_factor(u: f64) -> f64 {
     (u * (1.0 - u)).powi(3)
 }
 
@@ -115,7 +116,7 @@ fn lift_off(slope: impl Fn(&[f64; 3]) -> [f64; 3]) -> f64 {
 }
 
 /// The states `[q, w, t]` of a collision that begins at unit speed, at these places of its clock, from the first.
-fn along(
+fn states_at(
     slope: impl Fn(&[f64; 3]) -> [f64; 3],
     duration: f64,
     clock: impl Fn(f64) -> [f64; 2],

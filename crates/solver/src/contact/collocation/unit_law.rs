@@ -14,11 +14,11 @@ pub enum UnitLaw {
 }
 
 impl UnitLaw {
-    /// The law with a χ that is larger by `more`; that of a restitution as it is.
-    pub fn beside(&self, more: f64) -> Self {
+    /// The law with a χ that is larger by `offset`; unchanged for a law with one restitution.
+    pub fn with_chi_offset(&self, offset: f64) -> Self {
         match self {
             Self::Restoring(law) => Self::Restoring(Arc::clone(law)),
-            Self::Damping(chi) => Self::Damping(chi + more),
+            Self::Damping(chi) => Self::Damping(chi + offset),
         }
     }
 
@@ -30,7 +30,7 @@ impl UnitLaw {
         }
     }
 
-    /// The same of four contacts.
+    /// [`Self::push`] in four lanes.
     #[inline(always)]
     pub fn push_of_four(&self, s: f64x4, w: f64x4) -> f64x4 {
         match self {

@@ -19,10 +19,10 @@ pub enum End {
     InContact(Knot<4>),
 }
 
-/// Integrates a contact that begins (or goes on) at `from`, regularised `y`, until lift-off or time `to`.
+/// Integrates a contact that begins (or continues) at `from`, regularised `y`, until lift-off or time `to`.
 ///
 /// `rtol` is the error allowed in a step, relative to the largest `q` and the largest speed of this contact; in a sustained contact,
-/// relative to the recent ones. Where the last of the limits says so, the speed follows the forces once a strong dashpot's fast part of the motion has
+/// relative to the recent ones. With `allow_overdamped`, the speed follows the forces once a strong dashpot's fast part of the motion has
 /// decayed.
 ///
 /// # Errors
@@ -33,7 +33,7 @@ pub fn integrate(
     from: &Knot<4>,
     y: RegularisedState,
     to: f64,
-    (system, rtol, budget, follows): (&Coupled, f64, Budget, bool),
+    (system, rtol, budget, allow_overdamped): (&Coupled, f64, Budget, bool),
     (work, shared): (&mut Work, &Shared),
     observer: &mut (impl Observer<4> + ?Sized),
 ) -> Result<End, SolverError> {
@@ -45,11 +45,11 @@ pub fn integrate(
     let mut contact =
         Contact { shortest, touch_down: from.t, equations, is_soft, to, rtol, budget, plan, start, y };
     loop {
-        if follows && contact.turns() {
-            observer.seam();
+        if allow_overdamped && contact.toggle_overdamped() {
+            observer.discontinuity();
         }
-        let Accepted { slope, length, next, end, is_last, lifts_off, parts } =
-            contact.step(work, observer.looks())?;
+        let Accepted { slope, length, next, end, is_last, lifts_off, toggles_force } =
+            contact.step(work, observer.search_work())?;
         let piece = Piece {
             equations: &contact.equations,
             touch_down: contact.touch_down,
@@ -58,7 +58,7 @@ pub fn integrate(
             length,
             steps: 1,
             ends: [contact.start, end],
-            // Walls give back at most what they hold.
+            // Walls return at most the energy that they store.
             energy: (2.0 * system.total_energy(&contact.start.y)).sqrt()
                 + (end.t - contact.start.t) * system.energy_norm_growth(),
             bounds: Default::default(),
@@ -68,7 +68,7 @@ pub fn integrate(
         if length > 0.0 {
             observer.segment(&piece);
         }
-        if parts {
+        if toggles_force {
             contact.equations.set_force(contact.equations.has_no_force());
         }
         if is_last || observer.satisfied() {
@@ -81,7 +81,7 @@ pub fn integrate(
     }
 }
 
-/// A contact on its way.
+/// A contact that is being integrated.
 struct Contact {
     equations: RegularisedContact,
     /// Whether the force may have to be carried far.
@@ -92,9 +92,9 @@ struct Contact {
     rtol: f64,
     budget: Budget,
     plan: Plan,
-    /// Step length that is not fallen below.
+    /// Least step length.
     shortest: f64,
-    /// Where it is.
+    /// The present moment.
     start: Knot<4>,
     y: RegularisedState,
 }
@@ -110,14 +110,14 @@ struct Accepted {
     is_last: bool,
     lifts_off: bool,
     /// Whether the force of a contact with loss ends there, or begins again.
-    parts: bool,
+    toggles_force: bool,
 }
 
 impl Contact {
-    /// Leaves out the fast part of the motion if it has decayed, or takes it in again where the speed can no longer follow the forces; returns whether
-    /// it did either.
+    /// Leaves out the fast part of the motion if it has decayed, or restores it where the speed can no longer follow the forces; returns
+    /// whether it did either.
     #[cold]
-    fn turns(&mut self) -> bool {
+    fn toggle_overdamped(&mut self) -> bool {
         let Self { equations, y, plan, rtol, .. } = self;
         equations.set_excitation(y[TIME], self.start.excitation);
         let following = equations.following(y);
@@ -136,19 +136,19 @@ impl Contact {
     }
 
     /// The next step, of the length that its error allows. It is compiled once, not once for every observer.
-    fn step(&mut self, work: &mut Work, looks: u64) -> Result<Accepted, SolverError> {
+    fn step(&mut self, work: &mut Work, search_work: u64) -> Result<Accepted, SolverError> {
         let Self { equations, plan, y, rtol, touch_down, .. } = self;
         let (rtol, touch_down) = (*rtol, *touch_down);
         loop {
             // The force is a polynomial about the start of the step: the step is planned not to outrun it, and checked.
             equations.set_excitation(y[TIME], self.start.excitation);
-            let (unhindered, turning) = (plan.step(y), equations.frequency() * plan.q);
-            if self.is_soft && unhindered * turning > equations.turn() {
+            let (unrestricted, turning) = (plan.step(y), equations.frequency() * plan.q);
+            if self.is_soft && unrestricted * turning > equations.turn() {
                 equations.carry_excitation();
             }
             let reach = equations.turn() / turning;
             // A step aimed at the wall if that is near enough; the aim may be rough (see `reach_wall`).
-            let planned = unhindered.min(reach);
+            let planned = unrestricted.min(reach);
             // The equations of a speed that follows the forces end before the wall: such a step may come to half of q.
             let left = match y[W] {
                 w if w < 0.0 && equations.is_overdamped() => -y[Q] / w,
@@ -161,10 +161,10 @@ impl Contact {
             work.evaluations += EVALUATIONS + 1;
             let error = plan.error(h, &tried, rtol);
             let t = touch_down + y[TIME];
-            let shortened = (h / unhindered).min(1.0);
+            let shortened = (h / unrestricted).min(1.0);
             let lifting = tried.y[W] < 0.0 && tried.y[Q] < 0.02 * plan.q && !equations.is_overdamped();
             let wall = if lifting { reach_wall(equations, &tried.y, plan, rtol, work) } else { None };
-            // The length of the last step if it goes on to the wall: it may hardly be longer than the one tried.
+            // The length of the last step if it is extended to the wall: at most a little longer than the one tried.
             let to_wall = |wall: &RegularisedState| h - 4.0 * tried.y[Q] / (tried.y[W] + wall[W]); // dq/dθ = w/2
             let wall = wall.filter(|wall| to_wall(wall) <= 1.1 * h);
             // Beyond the wall there is no contact: a step must end where the wall can be reached. Nor may it outrun the force.
@@ -172,18 +172,18 @@ impl Contact {
             let lost = (tried.y[Q] < 0.0 && wall.is_none()) || turn > 2.0 * equations.turn();
             if error.is_nan() || error > 1.0 || lost {
                 work.rejected += 1;
-                plan.refuse(if lost { f64::INFINITY } else { error }, shortened, y);
+                plan.reject(if lost { f64::INFINITY } else { error }, shortened, y);
                 if !y.iter().all(|v| v.is_finite()) {
                     return Err(SolverError::NonFinite { t });
                 }
-                self.budget.check(&work.and(looks), t)?;
+                self.budget.check(&work.with_search_work(search_work), t)?;
                 if plan.h < self.shortest {
                     return Err(SolverError::Contact { t });
                 }
                 continue;
             }
             work.steps += 1;
-            self.budget.check(&work.and(looks), t)?;
+            self.budget.check(&work.with_search_work(search_work), t)?;
             let (mut next, mut length) = (tried.y, h);
             if let Some(wall) = wall {
                 (next, length) = (wall, to_wall(&wall));
@@ -209,12 +209,20 @@ impl Contact {
             }
             let seconds = next[TIME] - y[TIME];
             plan.adapt(equations, error, (shortened, seconds), &next, rtol);
-            return Ok(Accepted { slope, length, next, end, is_last, lifts_off, parts: parting.is_some() });
+            return Ok(Accepted {
+                slope,
+                length,
+                next,
+                end,
+                is_last,
+                lifts_off,
+                toggles_force: parting.is_some(),
+            });
         }
     }
 }
 
-/// Where the force of a contact with loss ends within a step between two states, as it would begin to pull, or begins again where it had
+/// Where the force of a contact with loss ends within a step between two states, because it would begin to pull, or resumes after it had
 /// ended: `1 + λ w = 0`. Forces are continuous there, but not their rates. Both ends of a step may lie on one side of a brief pull in it;
 /// then the cubic through the speeds and their slopes shows where to look.
 fn parting(
@@ -234,7 +242,7 @@ fn parting(
             return None;
         }
         let rising = rate(&equations.derivative(to));
-        upper = length * lowest([begin, end], [falling, rising])?;
+        upper = length * negative_minimum([begin, end], [falling, rising])?;
         if left(&advance(upper)) >= 0.0 {
             return None;
         }
@@ -261,7 +269,7 @@ fn parting(
 }
 
 /// Where in (0, 1) the cubic with these values and slopes at both ends has its minimum, if it has one and that is below zero.
-fn lowest([begin, end]: [f64; 2], [falling, rising]: [f64; 2]) -> Option<f64> {
+fn negative_minimum([begin, end]: [f64; 2], [falling, rising]: [f64; 2]) -> Option<f64> {
     // c(u) = begin + falling u + b u² + a u³
     let (a, b) = (falling + rising - 2.0 * (end - begin), 3.0 * (end - begin) - 2.0 * falling - rising);
     let root = (b * b - 3.0 * a * falling).sqrt();

@@ -1,6 +1,6 @@
 //! A piece of a contact in regularised time, as observers see it.
 
-use super::shared::{Shared, between, once};
+use super::shared::{Shared, cached, interval_key};
 use crate::methods::dop853::{self, Step};
 use crate::motion::form::{Form, QUINTIC};
 use crate::motion::knot::{Jet, Knot};
@@ -24,14 +24,14 @@ pub struct Piece<'a> {
     pub slope: &'a RegularisedState,
     /// Length in θ.
     pub length: f64,
-    /// Steps in which it is reached.
+    /// Number of steps from the start to a place in it.
     pub steps: u32,
     pub ends: [Knot<4>; 2],
     /// A bound on the energy norm of the motion in it, √J.
     pub energy: f64,
     /// Bounds over all of it, for observers of the state and of its rate.
     pub bounds: [OnceCell<[Growth<ORDERS>; 2]>; 2],
-    /// What its observers share of its parts, if many are looked at.
+    /// The cache of its observers, if they evaluate it often.
     pub shared: Option<&'a Shared>,
 }
 
@@ -78,7 +78,7 @@ impl Segment<4> for Piece<'_> {
     }
     fn at(&self, theta: f64) -> Knot<4> {
         let reach = || knot(self.equations, self.touch_down, &self.advance(theta));
-        once(self.shared.map(|shared| &shared.moments), theta, reach)
+        cached(self.shared.map(|shared| &shared.moments), theta, reach)
     }
     fn at_time(&self, t: f64) -> Knot<4> {
         let (_, y) = at_elapsed(|theta| self.advance(theta), self.length, t - self.touch_down);
@@ -93,19 +93,20 @@ impl Segment<4> for Piece<'_> {
             Jet { states, force }
         })
     }
-    /// Measured by `just lab hunt-durations`: the law of a restitution enters forces and bounds, without polynomials by an iteration.
+    /// Measured by `just lab hunt-durations`: the law of a restitution enters forces and bounds; where it is not tabulated, it takes an
+    /// iteration.
     fn cost(&self) -> u64 {
         self.equations.restoring().map_or(1, |law| if law.is_tabulated() { 3 } else { 12 })
     }
     fn quintic_error(&self, form: &Form<4>, ends: [&Knot<4>; 2], h: f64, _sharp: bool) -> Option<f64> {
         let bound = || self.growth(form, ends, h);
-        let own;
+        let computed;
         let [growth, rates] = if h == self.length {
             self.bounds[usize::from(form.is_rated())].get_or_init(bound)
         } else {
-            let kept = self.shared.map(|shared| &shared.growths[usize::from(form.is_rated())]);
-            own = once(kept, between(ends, h), bound);
-            &own
+            let cache = self.shared.map(|shared| &shared.growths[usize::from(form.is_rated())]);
+            computed = cached(cache, interval_key(ends, h), bound);
+            &computed
         };
         Some(QUINTIC * 720.0 * h.powi(6) * form.in_contact::<ORDERS>(growth, rates, 6)) // 6! of a Taylor coefficient
     }
@@ -120,13 +121,13 @@ impl Piece<'_> {
         regularised(self.equations, self.touch_down, knot)
     }
 
-    /// How far the motion goes between two places `h` apart.
+    /// Bounds on the change of the motion between two places `h` apart.
     fn change(&self, ends: [&Knot<4>; 2], h: f64) -> Option<Change> {
         let bound = || {
             let states = ends.map(|knot| self.state(knot));
             self.equations.change(h, states.each_ref())
         };
-        once(self.shared.map(|shared| &shared.changes), between(ends, h), bound)
+        cached(self.shared.map(|shared| &shared.changes), interval_key(ends, h), bound)
     }
 
     /// Bounds between two places `h` apart; those of the rates where a form needs them.
@@ -157,8 +158,8 @@ impl Piece<'_> {
     }
 }
 
-/// The `θ` and the state when `elapsed` seconds have passed since touch-down, within a piece of `length`: time grows with
-/// θ, so Newton's iteration kept inside by bisection finds it.
+/// The `θ` and the state when `elapsed` seconds have passed since touch-down, within a piece of `length`: time grows with θ, so Newton's
+/// iteration safeguarded by bisection finds it.
 pub fn at_elapsed(
     advance: impl Fn(f64) -> RegularisedState,
     length: f64,

@@ -4,7 +4,7 @@ use super::piece::{Q, V1, W};
 use crate::methods::dop853::Step;
 use retune_model::{RegularisedContact, RegularisedState};
 
-/// The natural sizes of a contact, and the steps planned for it.
+/// The scales of a contact, and the steps planned for it.
 pub struct Plan {
     /// Largest `q` (√m) and speed (m/s), expected or recently seen: errors are measured against them.
     pub q: f64,
@@ -15,7 +15,7 @@ pub struct Plan {
     mass_ratio: f64,
     /// Step at the deepest point, s/√m.
     pub h: f64,
-    taken: u32,
+    steps_taken: u32,
 }
 
 impl Plan {
@@ -23,10 +23,10 @@ impl Plan {
     /// undisturbed collision.
     const DEEPEST: f64 = 0.118;
 
-    /// Factor by which the remembered scales fall with each step of a sustained contact.
+    /// Factor on the scales at each step of a sustained contact.
     const FORGET: f64 = 0.8;
 
-    /// Most steps of a collision; a contact with more is a sustained contact, whose steps follow the error estimate alone.
+    /// Limit on steps of a collision; a contact with more is a sustained contact, whose steps follow the error estimate alone.
     const COLLISION: u32 = 40;
 
     /// The plan of a contact that begins at `y`, each step of it to `rtol` of its sizes.
@@ -36,14 +36,20 @@ impl Plan {
         let q = equations.greatest_depth(w);
         let h = Self::DEEPEST * (rtol / 1e-9).powf(1.0 / 8.0) * 2.0 * q / w;
         let mass_ratio = equations.mass_ratio();
-        let mut plan = Self { q, w, rounding: 0.0, mass_ratio, h, taken: 0 };
+        let mut plan = Self { q, w, rounding: 0.0, mass_ratio, h, steps_taken: 0 };
         // A contact lasts about `3 q² / w`.
-        plan.round(equations, y, 3.0 * q * q / w, rtol);
+        plan.estimate_rounding(equations, y, 3.0 * q * q / w, rtol);
         plan
     }
 
-    /// Estimates the rounding error of a speed over so many seconds; the weights of the error estimate add up to about 50.
-    fn round(&mut self, equations: &RegularisedContact, y: &RegularisedState, seconds: f64, rtol: f64) {
+    /// Estimates the rounding error of a speed over `seconds`; the weights of the error estimate add up to about 50.
+    fn estimate_rounding(
+        &mut self,
+        equations: &RegularisedContact,
+        y: &RegularisedState,
+        seconds: f64,
+        rtol: f64,
+    ) {
         self.rounding = 50.0 * f64::EPSILON * equations.size_of_terms(y) * seconds * self.mass_ratio / rtol;
     }
 
@@ -68,9 +74,9 @@ impl Plan {
         step.error(h, [(Q, q), (W, w), (V1, w * self.mass_ratio)])
     }
 
-    /// Adapts to a step that had this error. Within a collision the plan is better than a single estimate; in a sustained contact the
-    /// time scale follows the present `q`, however deep the contact was before. The step was `shortened` to this share of the planned
-    /// one, and took so many seconds.
+    /// Adapts to a step that had this error. Within a collision the plan is better than a single estimate; in a sustained contact the time
+    /// scale follows the present `q`, however deep the contact was before. The step was `shortened` to this share of the planned one, and
+    /// took `seconds`.
     pub fn adapt(
         &mut self,
         equations: &RegularisedContact,
@@ -79,20 +85,20 @@ impl Plan {
         y: &RegularisedState,
         rtol: f64,
     ) {
-        self.taken += 1;
-        if self.taken > Self::COLLISION {
+        self.steps_taken += 1;
+        if self.steps_taken > Self::COLLISION {
             self.h *= shortened * (0.9 * error.powf(-1.0 / 8.0)).clamp(0.7, 1.5);
             self.q *= Self::FORGET;
             self.w = (self.w * Self::FORGET).max(equations.speed_at_depth(y[Q]));
-            self.round(equations, y, seconds, rtol);
+            self.estimate_rounding(equations, y, seconds, rtol);
         }
         self.q = self.q.max(y[Q].abs());
         self.w = self.w.max(y[W].abs());
     }
 
-    /// Adapts to a step that was refused, `shortened` as in [`Self::adapt`]: a collision dominated by forces other than Hertz's stays
+    /// Adapts to a step that was rejected, `shortened` as in [`Self::adapt`]: a collision dominated by forces other than Hertz's stays
     /// shallower than an undisturbed one.
-    pub fn refuse(&mut self, error: f64, shortened: f64, y: &RegularisedState) {
+    pub fn reject(&mut self, error: f64, shortened: f64, y: &RegularisedState) {
         let factor = if error.is_finite() { (0.9 * error.powf(-1.0 / 8.0)).clamp(0.1, 0.9) } else { 0.1 };
         self.h *= factor * shortened;
         let expected = self.q;

@@ -1,5 +1,5 @@
-//! Contacts without loss, in steps of Taylor series: a step is as long as the motion takes to turn, and all that observers ask of its interior is a
-//! polynomial.
+//! Contacts without loss, in steps of Taylor series: a step covers at most a given phase of the fastest motion, and observers evaluate
+//! polynomials inside it.
 
 use super::integrate::End;
 use super::piece::{Q, TIME, W, at_elapsed, regularised};
@@ -16,21 +16,24 @@ use retune_model::{
 use std::cell::OnceCell;
 use wide::f64x4;
 
-/// The angle (rad) by which the fastest of damper, structure and force turns in a step at most: observers expect of a segment that a speed changes its
-/// sign once, and that a rule of 8 nodes is exact on it.
+/// Largest phase (rad) by which the fastest of damper, structure and force advances in a step: observers assume that a speed changes its
+/// sign at most once in a segment, and that a rule of 8 nodes is exact on it.
 const TURN: f64 = 1.5;
 
-/// The same once a contact has lasted for so many steps: a spring holds the damper to its wall. A speed may still change its sign but once.
+/// The number of steps after which a spring is assumed to hold the damper to its wall, and the largest phase from then on. A speed still
+/// changes its sign at most once.
 const HELD: (u64, f64) = (100, 3.0);
 
 /// The share of the error allowed in a step that its last two terms may make up. The first term left out is smaller.
-const LAST: f64 = 0.1;
+const TAIL_SHARE: f64 = 0.1;
 
-/// The angle (rad) by which the force may turn in a step that carries it on: `0.5¹⁴ / 14! = 7e-16` of it are left out. Errors of it would add up.
-const CARRIED: f64 = 0.5;
+/// Largest phase (rad) of the force in a step whose series carries the force on: `0.5¹⁴ / 14! = 7e-16` of it is truncated, and errors of
+/// the force would accumulate.
+const CARRIED_TURN: f64 = 0.5;
 
-/// The largest error of a step: searches take slopes from the equations, which a polynomial must obey as closely as its maxima are to be known.
-const LARGEST: f64 = 1e-6;
+/// Loosest tolerance of a step: searches take slopes from the equations, which a polynomial must satisfy as accurately as its maxima are to
+/// be known.
+const MAX_RTOL: f64 = 1e-6;
 
 /// Follows a contact without loss from `from`, regularised `y`, until lift-off or time `to`; `rtol` as in [`integrate`](super::integrate::integrate).
 ///
@@ -44,7 +47,7 @@ pub fn follow(
     work: &mut Work,
     observer: &mut (impl Observer<4> + ?Sized),
 ) -> Result<End, SolverError> {
-    let (touch_down, rtol) = (start.t - y[TIME], rtol.min(LARGEST));
+    let (touch_down, rtol) = (start.t - y[TIME], rtol.min(MAX_RTOL));
     start.clock = [y[Q], 0.5 * y[W]];
     equations.set_excitation(y[TIME], start.excitation);
     let mut speed = 0.0_f64;
@@ -55,7 +58,7 @@ pub fn follow(
             turn = HELD.1;
             series = ContactSeries::for_turn(turn, rtol);
         }
-        // The sizes of the collision that is as fast as recent motion, or comes as deep.
+        // The scales of a collision that is as fast as the recent motion, or as deep.
         let deep = equations.speed_at_depth(y[Q]);
         speed = (0.5 * speed).max(y[W].abs()).max(deep);
         let depth = if speed == deep { y[Q] } else { equations.greatest_depth(speed) };
@@ -67,10 +70,10 @@ pub fn follow(
         series.expand(&equations, &y, start.excitation, 1.0 / (pressed * equations.turning(pressed)));
         let Step { length, mut end, state, event } =
             step(&equations, &series, &y, (touch_down, to), (rtol, turn, speed, depth), work)?;
-        if equations.frequency() * (end.t - start.t) > CARRIED {
+        if equations.frequency() * (end.t - start.t) > CARRIED_TURN {
             end.excitation = system.bare().turned(start.excitation, end.t - start.t);
         }
-        budget.check(&work.and(observer.looks()), end.t)?;
+        budget.check(&work.with_search_work(observer.search_work()), end.t)?;
         let energy =
             (2.0 * system.total_energy(&start.y)).sqrt() + (end.t - start.t) * system.energy_norm_growth();
         let piece = Piece {
@@ -122,14 +125,14 @@ fn step(
     work.steps += 1;
     work.evaluations += series.terms() as u64;
     let turning = equations.turning(q);
-    // A speed is known to what rounding leaves of its rate in a turn.
-    let lost = f64::EPSILON * equations.size_of_terms(y) * equations.mass_ratio() / turning;
-    let allowed = (rtol * speed).max(lost);
-    let share = LAST * allowed / speed;
+    // The rounding error of a speed: that of its rate over a radian.
+    let rounding = f64::EPSILON * equations.size_of_terms(y) * equations.mass_ratio() / turning;
+    let allowed = (rtol * speed).max(rounding);
+    let share = TAIL_SHARE * allowed / speed;
     let sizes = [q, speed, speed / equations.mass_ratio()].map(|size| share * size);
     let mut length = series.reach(sizes, turn / (q * turning));
     let mut moment = series.at(length);
-    // The accelerations of the polynomials are those of their states at the end, too.
+    // The polynomials must satisfy the equations at the end of the step, too.
     while equations.defect(series, length, &moment) * length * q > allowed {
         work.rejected += 1;
         length *= 0.5;
@@ -141,18 +144,18 @@ fn step(
         return Err(if finite { SolverError::Contact { t } } else { SolverError::NonFinite { t } });
     }
     let mut event = None;
-    if let Some(leaves) = first_root(&series.root(), length / series.unit()) {
-        let leaves = leaves * series.unit();
-        (length, moment, event) = (leaves, series.at(leaves), Some(Event::LiftOff));
+    if let Some(lift_off) = first_root(&series.root(), length / series.unit()) {
+        let lift_off = lift_off * series.unit();
+        (length, moment, event) = (lift_off, series.at(lift_off), Some(Event::LiftOff));
         moment.state[Q] = 0.0;
     }
-    let ends = touch_down + moment.state[TIME] >= to;
-    if ends {
+    let is_last = touch_down + moment.state[TIME] >= to;
+    if is_last {
         (length, _) = at_elapsed(|theta| series.at(theta).state, length, to - touch_down);
         (moment, event) = (series.at(length), Some(Event::End));
     }
     let mut end = knot(equations, touch_down, &moment);
-    if ends {
+    if is_last {
         end.t = to;
     }
     Ok(Step { length, end, state: moment.state, event })
@@ -173,8 +176,8 @@ fn knot(
 /// Between two places `h` apart it is above the lower of its values there less `h²/8` times the bound on its curvature.
 fn first_root(terms: &[f64], length: f64) -> Option<f64> {
     let terms = if terms[0] == 0.0 { &terms[1..] } else { terms };
-    let others = terms[1..].iter().rev().fold(0.0, |sum, term| (sum + term.abs()) * length);
-    if terms[0] > others {
+    let rest = terms[1..].iter().rev().fold(0.0, |sum, term| (sum + term.abs()) * length);
+    if terms[0] > rest {
         return None;
     }
     // Value and slope.
@@ -210,7 +213,8 @@ fn first_root(terms: &[f64], length: f64) -> Option<f64> {
     None
 }
 
-/// The root of a function, given with its slope, that falls through zero between two places: Newton's iteration kept inside by bisection.
+/// The root of a function that falls through zero between two places, by Newton's iteration safeguarded by bisection; `at` returns value
+/// and slope.
 fn root_between(at: impl Fn(f64) -> [f64; 2], mut lower: f64, mut upper: f64) -> f64 {
     let (mut theta, length) = (upper, upper);
     for _ in 0..100 {
@@ -285,7 +289,8 @@ mod tests {
     use retune_model::Side;
     use retune_testkit::scenes::{Numbers, SSVI, TWO_SIDED};
 
-    /// While the structure swings back from -1 m it presses the damper on a soft wall, and a force that is weak beside the wall's turns by 180 rad.
+    /// While the structure swings back from -1 m it presses the damper on a soft wall, and a force that is weak compared with the wall's
+    /// rotates by 180 rad.
     #[test]
     fn regress_a_weak_fast_force_is_carried_to_rounding() {
         let young = [2.1e11, 2.2e5, 2.1e11, 2.2e5];
@@ -302,7 +307,8 @@ mod tests {
         assert!(off < 1e-12 * 1e-3 && work.steps > 50, "{off} in {} steps", work.steps);
     }
 
-    /// Contacts from touch-down to lift-off, and one that a stiff spring holds until the run ends, beside the same in steps of DOP853.
+    /// Contacts from touch-down to lift-off, and one that a stiff spring holds until the run ends, compared with the same contacts in steps
+    /// of DOP853.
     #[test]
     fn reference_contacts_in_series_end_where_those_in_steps_do() {
         let soft = [2.1e11, 2.2e5, 2.1e11, 2.2e5];

@@ -3,16 +3,16 @@
 use super::{Form, times};
 use retune_model::{Change, Forces, Growth, OverContact};
 
-/// The sizes of the weights of the numbers of [`Growth`] in a row of weights of the state: `x2 - D = x1 + sign (stretch)`,
-/// `v2 = v1 + sign w`.
-fn sizes(row: &[f64; 4]) -> [f64; 4] {
+/// The magnitudes of the weights of the numbers of [`Growth`], from a row of weights of the state:
+/// `x2 - D = x1 + sign (stretch)`, `v2 = v1 + sign w`.
+fn absolute_weights(row: &[f64; 4]) -> [f64; 4] {
     let [x1, v1, x2, v2] = row;
     [x1 + x2, v1 + v2, *x2, *v2].map(f64::abs)
 }
 
-/// How far a quantity may rise between two places `h` apart above the larger of its values there, where its slope is no farther than `turn` from
-/// that at the nearer of the two. What the half before the middle may reach by its own slopes, the other half may exclude: a quantity that only
-/// rises up to the middle is there no larger than beyond it.
+/// How far a quantity may rise between two places `h` apart above the larger of its values there, where its slope is no farther than `turn`
+/// from that at the nearer of the two. Where the quantity rises throughout one half towards the middle, its largest value lies in the other
+/// half, whose bound alone counts.
 fn rise_by_slopes(slopes: [f64; 2], turn: f64, h: f64) -> f64 {
     let ahead = [slopes[0], -slopes[1]]; // from either end towards the middle
     let rises = ahead.map(|slope| 0.5 * h * (slope + turn).max(0.0));
@@ -25,26 +25,27 @@ fn rise_by_slopes(slopes: [f64; 2], turn: f64, h: f64) -> f64 {
 }
 
 impl Form<4> {
-    /// A bound on how far a quantity without the rate of the state exceeds, in a contact, the larger of its values at both ends. `kick` is
-    /// the rate of the state under Hertz's force over `q³`, `hertz_rate` (κ) that of the speed.
+    /// A bound on how far, in a contact, a quantity that does not depend on the rate of the state exceeds the larger of its values at both
+    /// ends. `kick` is the rate of the state under Hertz's force over `q³`, `hertz_rate` (κ) that of the speed.
     ///
     /// It changes at the rate `α q³ + β`, with `β` as in flight. By Hertz's force alone `α = (linear + Σ weight (row · d) row) · kick`
-    /// would never fall, since no weight is negative, so that the integral of `α q³` would be largest at an end. What other forces do to
+    /// would never fall, since no weight is negative, so the integral of `α q³` would be largest at an end. The effect of other forces on
     /// `α`, and `β`, add at most their integrals.
     pub fn rise_in_contact(&self, kick: &[f64; 4], hertz_rate: f64, over: &OverContact) -> f64 {
         let mut turn = 0.0;
         for (weight, row) in &self.squares {
             let along = row.iter().zip(kick).map(|(a, b)| a * b).sum::<f64>();
             if along != 0.0 {
-                let weights = sizes(row);
+                let weights = absolute_weights(row);
                 turn += weight * along.abs() * (0..4).map(|i| weights[i] * over.beside[i]).sum::<f64>();
             }
         }
-        over.duration * (self.slope.at(&over.most) + turn * over.impulse / hertz_rate)
+        over.duration * (self.slope.bound(&over.most) + turn * over.impulse / hertz_rate)
     }
 
-    /// How far the quantity may rise above the larger of its values at two places `h` apart, from its slopes there: by its change, or, where
-    /// it does not depend on the rate of the state, by those slopes and how far others may be from the nearer of the two.
+    /// How far the quantity may rise above the larger of its values at two places `h` apart, from its slopes there: from its change, or,
+    /// where it does not depend on the rate of the state, from these slopes and a bound on how far the slope may be from the nearer of
+    /// them.
     pub fn rise_between(&self, change: &Change, slopes: [f64; 2], h: f64) -> f64 {
         let rise = self.in_contact::<2>(&change.states, &change.rates, 1);
         if self.is_rated() {
@@ -57,11 +58,11 @@ impl Form<4> {
         rise.min(rise_by_slopes(slopes, change.root[0] * turn + change.root[1] * most, h))
     }
 
-    /// A bound on the slope in time, `linear · d' + Σ weight (row · d) (row · d')`, and on how far it is from that at the nearer of two places, by
-    /// states and their rates.
+    /// A bound on the slope in time, `linear · d' + Σ weight (row · d) (row · d')`, and on how far it is from the slope at the nearer of
+    /// two places, from states and their rates.
     fn slopes_by_rates(&self, states: &Growth<2>, rates: &Growth<2>) -> [f64; 2] {
         let sizes = |row: &[f64; 4], of: &Growth<2>, k: usize| -> f64 {
-            let weights = sizes(row);
+            let weights = absolute_weights(row);
             (0..4).map(|i| times(weights[i], of[i][k])).sum()
         };
         let (mut most, mut turn) = (sizes(&self.linear, rates, 0), sizes(&self.linear, rates, 1));
@@ -74,15 +75,15 @@ impl Form<4> {
         [most, turn]
     }
 
-    /// The same by states and forces, so that what a spring and its energy exchange does not count.
+    /// [`Self::slopes_by_rates`] from states and forces, where the work that a spring exchanges with its energy cancels.
     fn slopes_by_forces(&self, states: &Growth<2>, Forces { contact, turn, kick }: &Forces) -> [f64; 2] {
         let [most, of] = [0, 1].map(|k| states.map(|number| number[k]));
-        let mut slopes = [self.slope.at(&most), self.slope.within(&most, &of, *turn)];
+        let mut slopes = [self.slope.bound(&most), self.slope.variation(&most, &of, *turn)];
         let along = |row: &[f64; 4]| row.iter().zip(kick).map(|(a, b)| a * b).sum::<f64>().abs();
         let linear = along(&self.linear);
         let mut kicked = [linear, 0.0];
         for (weight, row) in &self.squares {
-            let (by, weights) = (weight * along(row), sizes(row));
+            let (by, weights) = (weight * along(row), absolute_weights(row));
             for (kicked, numbers) in kicked.iter_mut().zip([&most, &of]) {
                 *kicked += times(by, (0..4).map(|i| times(weights[i], numbers[i])).sum());
             }
@@ -96,11 +97,11 @@ impl Form<4> {
     /// the state, from those of that rate.
     pub fn in_contact<const K: usize>(&self, growth: &Growth<K>, rates: &Growth<K>, k: usize) -> f64 {
         let combined = |row: &[f64; 4]| -> [f64; K] {
-            let weights = sizes(row);
+            let weights = absolute_weights(row);
             std::array::from_fn(|k| (0..4).map(|i| times(weights[i], growth[i][k])).sum())
         };
         let rated = self.rated.as_ref().map_or(0.0, |rated| {
-            let weights = sizes(&rated.row);
+            let weights = absolute_weights(&rated.row);
             (0..4).map(|i| times(weights[i], rates[i][k])).sum()
         });
         let square = |(weight, row): &(f64, [f64; 4])| {

@@ -2,11 +2,11 @@
 
 use crate::system::LinearSystem;
 
-/// The rate at which a quantity changes in flight, as a polynomial in the numbers of `retune_model::Growth` with every coefficient by its size:
-/// `constant + (linear + square n) · n`.
+/// The rate at which a quantity changes in flight, as a polynomial in the numbers of `retune_model::Growth` with every coefficient by its
+/// magnitude: `constant + (linear + square n) · n`.
 ///
-/// It is `(linear + Σ weight (row · d) row) · (A d + b P cos ωt)`; terms that cancel, as the two by which a spring and its energy
-/// exchange work, have no size.
+/// It is `(linear + Σ weight (row · d) row) · (A d + b P cos ωt)`; terms that cancel, such as the two by which a spring exchanges work with
+/// its energy, do not count.
 #[derive(Clone, Copy, Debug)]
 pub struct SlopeInFlight<const N: usize> {
     constant: f64,
@@ -23,26 +23,26 @@ fn by_number<const N: usize>(row: &[f64; N]) -> [f64; N] {
 }
 
 impl<const N: usize> SlopeInFlight<N> {
-    /// That of `linear · d + Σ weight/2 (row · d)²`.
+    /// The rate of `linear · d + Σ weight/2 (row · d)²`.
     pub fn new<S: LinearSystem<N>>(system: &S, linear: &[f64; N], squares: &[(f64, [f64; N]); 2]) -> Self {
         let (of, force) = (system.linear(), system.amplitude());
         let dot = |a: &[f64; N], b: &[f64; N]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         // row · A and row · b P.
-        let turned = |row: &[f64; N]| {
+        let rate_of = |row: &[f64; N]| {
             (by_number(&of.columns.map(|column| dot(row, &column))), dot(row, &of.input) * force)
         };
-        let (own, driven) = turned(linear);
+        let (rate_row, driven) = rate_of(linear);
         let (mut slope, mut square) = (
             Self {
                 constant: driven.abs(),
-                linear: own.map(f64::abs),
+                linear: rate_row.map(f64::abs),
                 driven: [0.0; N],
                 square: [[0.0; N]; N],
             },
             [[0.0; N]; N],
         );
         for (weight, row) in squares {
-            let (numbers, (rate, driven)) = (by_number(row), turned(row));
+            let (numbers, (rate, driven)) = (by_number(row), rate_of(row));
             for i in 0..N {
                 slope.linear[i] += (weight * numbers[i] * driven).abs();
                 slope.driven[i] += (weight * numbers[i] * driven).abs();
@@ -59,8 +59,8 @@ impl<const N: usize> SlopeInFlight<N> {
         slope
     }
 
-    /// At most, where the numbers have at most these sizes.
-    pub fn at(&self, most: &[f64; N]) -> f64 {
+    /// A bound on the rate where the numbers have at most these magnitudes.
+    pub fn bound(&self, most: &[f64; N]) -> f64 {
         let mut sum = self.constant;
         for i in 0..N {
             let by = (0..N).map(|j| self.square[i][j] * most[j]).sum::<f64>();
@@ -69,9 +69,9 @@ impl<const N: usize> SlopeInFlight<N> {
         sum
     }
 
-    /// How far it may be from what it is where the numbers are no farther than `of` away, and the force no farther than a share `turn` of its
-    /// bound. Numbers at both places are at most `most`.
-    pub fn within(&self, most: &[f64; N], of: &[f64; N], turn: f64) -> f64 {
+    /// A bound on the change of the rate between two places at which the numbers are at most `most` and differ by at most `of`, and the
+    /// force differs by at most a share `turn` of its bound.
+    pub fn variation(&self, most: &[f64; N], of: &[f64; N], turn: f64) -> f64 {
         let mut sum = self.constant * turn;
         for i in 0..N {
             let by = (0..N).map(|j| 2.0 * self.square[i][j] * most[j]).sum::<f64>();

@@ -1,4 +1,4 @@
-//! Contacts across samples of a record, computed at once, beside the same contacts followed step by step from sample to sample.
+//! Contacts across samples of a record, computed at once, compared with the same contacts followed step by step from sample to sample.
 
 use super::{Draw, numbers, step_by_step, touch_down};
 use crate::contact::collocation::bends::Bends;
@@ -11,7 +11,7 @@ use retune_model::{Coupled, Of, Samples};
 use retune_testkit::histories::record;
 use retune_testkit::scenes::Numbers;
 
-/// A record over a contact: samples so many durations of the contact apart, values of at most this size, which are noise or a slow wave.
+/// A record over a contact: samples `apart` durations of the contact apart, values of at most this size, which are noise or a slow wave.
 #[derive(Clone, Copy, Debug)]
 struct Ground {
     of: Of,
@@ -45,7 +45,8 @@ impl Ground {
     }
 }
 
-/// How far a contact drawn at random is from steps, in shares of its touch-down speed or its duration; `None` if it is not computed at once.
+/// The distance of a contact drawn at random from steps, in shares of its touch-down speed or its duration; `None` if it is not computed at
+/// once.
 fn off(
     draw: &mut Draw,
     ground: Ground,

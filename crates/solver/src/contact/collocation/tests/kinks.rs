@@ -1,4 +1,5 @@
-//! The error that a bend of the force makes in a contact, to first order: the linear theory of an undisturbed collision beside its rules.
+//! The error that a bend of the force makes in a contact, to first order: the linear theory of an undisturbed collision compared with its
+//! rules.
 
 use crate::contact::collocation::lossy_rule::{Loss, LossyRule};
 use crate::contact::collocation::nodes::{Nodes, dot};
@@ -32,7 +33,7 @@ impl Bend {
     }
 }
 
-/// How much longer a collision of a law lasts, in shares of its duration, and by how much its speed at the end changes, over that at touch-down.
+/// The lengthening of a collision of a law, in shares of its duration, and the change of its speed at the end, over that at touch-down.
 fn exactly(law: &UnitLaw, duration: f64, bend: Bend) -> [f64; 2] {
     let slope = |&[q, w, t, z, v]: &[f64; 5]| {
         let [factor, by_z, by_w] = law.slopes(0.5 * q.abs().powi(5), w);
@@ -67,7 +68,7 @@ fn exactly(law: &UnitLaw, duration: f64, bend: Bend) -> [f64; 2] {
     }
 }
 
-/// The same by a rule for contacts without loss, to first order.
+/// [`exactly`] by a rule for contacts without loss, to first order.
 fn by_lossless<const N: usize, const M: usize>((rule, newton): &Lossless<N, M>, bend: Bend) -> [f64; 2] {
     let residual = Bend::nodes(&rule.times, |time| -bend.adds(time));
     let (change, shorter) = newton.change([0.0; 3], &residual, -bend.adds(1.0));
@@ -77,7 +78,7 @@ fn by_lossless<const N: usize, const M: usize>((rule, newton): &Lossless<N, M>, 
     [-shorter, bend.slope(1.0) / DURATION - 1.25 * DURATION * slowed]
 }
 
-/// The same of contacts with loss.
+/// [`exactly`] by a rule for contacts with loss, to first order.
 fn by_lossy<const N: usize, const M: usize>(of: &LossyRule<N, M>, bend: Bend) -> [f64; 2] {
     let rule = &of.rule;
     let deeper = Bend::nodes(&rule.times, |time| bend.adds(time));
@@ -123,7 +124,7 @@ fn exact_what_a_bend_costs_to_first_order() {
     of::<24, 6>(&none);
 }
 
-/// The same where energy is lost.
+/// The error where energy is lost.
 #[test]
 fn exact_what_a_bend_costs_to_first_order_with_loss() {
     let restitutions = [0.3, 0.6, 0.999].map(|e| Numbers { e, ..SSVI });
