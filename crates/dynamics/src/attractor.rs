@@ -19,8 +19,8 @@ pub const BEYOND: f64 = 3.0;
 
 /// Whether two stretches of stroboscopic states (√J), each of two states or more, belong to different motions.
 pub fn distinct(a: &[[f64; 4]], b: &[[f64; 4]]) -> bool {
-    let own = drift(a).max(drift(b));
-    separation(a, b) > (APART * size(a).max(size(b))).max(BEYOND * own)
+    let within = drift(a).max(drift(b));
+    separation(a, b) > (APART * size(a).max(size(b))).max(BEYOND * within)
 }
 
 /// For each stretch, the index of the first stretch with the same motion: `[0, 0, 2]` are two motions.

@@ -4,11 +4,12 @@
 //! closes the gaps between them all at once (multiple shooting), with exact derivatives of each (`retune_solver::Tangent`). A branch is
 //! followed by pseudo-arclength continuation (H. B. Keller, 1977), so that it goes through folds.
 //!
-//! Read `forced` (what it asks of a system), `shooting` (the equations and their solution), `orbit` (a motion, and `seen` of it), `trace` (a
-//! branch, and that of twice the period which begins on it), `events` (its bifurcations), `settle` (what a run settles on), `attractors` (what runs
-//! from many starts do), `largest`, then `branches`, which asks for all of them, `belongs` (which branch a motion lies on), `seek` (what runs at the
-//! samples have not led to) and `deflate` (Newton's iteration away from what is known), `worst`, the largest value over them, `onset`
-//! (from which value of a parameter on a motion is there), `known` (motions of one damper followed to another), and `basins`, where starts end.
+//! Read `forced` (the interface to a system), `shooting` (the equations and their solution), `orbit` and `seen` (a motion and its observed
+//! quantities), `trace` (a branch, and the branch of twice the period that begins on it), `events` (bifurcations), `settle` (the motion
+//! that a run settles on), `attractors` (those of runs from many starts), `largest`, then `branches`, which uses all of them, `belongs`
+//! (the branch that a motion lies on), `seek` (motions that runs at the samples miss), `deflate` (Newton's iteration away from known
+//! motions), `worst` (the largest value over all), `onset` (the value of a parameter from which a motion exists), `known` (motions of one
+//! damper continued to another), and `basins` (where starts end).
 
 pub mod attractors;
 pub mod basins;

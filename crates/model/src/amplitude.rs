@@ -1,7 +1,7 @@
-//! The catalogue of harmonic forcings: what the number that gives one is the amplitude of.
+//! The catalogue of harmonic forcings, by the quantity of which the amplitude is given.
 
-/// What the amplitude of a harmonic forcing is of. All that moves the structure follows from two facts: whether it is a force on the
-/// structure or a motion of its base, and by which power of the angular frequency ω the force (N), or the displacement of the base (m), grows.
+/// The quantity of which a harmonic forcing gives the amplitude. Two facts determine its effect: whether it is a force on the structure or
+/// a motion of its base, and the power of the angular frequency ω with which the force (N), or the displacement of the base (m), grows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Amplitude {
     /// A force P cos ωt on the structure: P, N.
@@ -19,7 +19,7 @@ impl Amplitude {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Force, Self::Imbalance, Self::Base, Self::BaseAcceleration];
 
-    /// Whether it moves the base, the power of ω, and its words, which its size follows.
+    /// Whether it moves the base, the power of ω, and the words before its size.
     const fn entry(self) -> (bool, i32, &'static str) {
         match self {
             Self::Force => (false, 0, "a force of"),
@@ -29,12 +29,12 @@ impl Amplitude {
         }
     }
 
-    /// Whether it is of a motion of the base.
+    /// Whether it is a motion of the base.
     pub const fn is_of_base(self) -> bool {
         self.entry().0
     }
 
-    /// The power of ω by which the force, or the displacement of the base, grows.
+    /// The power of ω with which the force, or the displacement of the base, grows.
     pub const fn power(self) -> i32 {
         self.entry().1
     }

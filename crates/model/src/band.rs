@@ -51,8 +51,8 @@ impl Bare {
         }
         let mut worst = Worst::NONE;
         if from < to {
-            let seen = Seen { worst: &mut worst, share: 1.0, visit: &mut |_| () };
-            Search::new(self, Factors::of_bare(self, to * to), false, measure, [from, to], seen).run();
+            let collector = Collector { worst: &mut worst, share: 1.0, visit: &mut |_| () };
+            Search::new(self, Factors::of_bare(self, to * to), false, measure, [from, to], collector).run();
         } else {
             worst.note(from, self.steady(from).largest(self, from, measure));
         }
@@ -79,8 +79,8 @@ impl Coupled {
         self.steady_over(measure, band, 1.0, &mut |_| ())
     }
 
-    /// The places over a band with at least the share `least` of the largest value of a quantity at which it may be largest for a design
-    /// nearby: every maximum, and the ends of the band.
+    /// The candidates for the largest value of a quantity over a band at a nearby design: every maximum, and the ends of the band, with at
+    /// least the share `least` of the largest value.
     pub fn steady_peaks(&self, measure: Measure, band: [f64; 2], least: f64) -> Vec<Worst> {
         let mut peaks = Vec::new();
         let worst = self.steady_over(measure, band, least, &mut |peak| peaks.push(peak));
@@ -98,8 +98,8 @@ impl Coupled {
         let mut worst = Worst::NONE;
         if from < to && !measure.is_of_walls() {
             let factors = Factors::new(self, to * to);
-            let seen = Seen { worst: &mut worst, share, visit };
-            Search::new(self.bare(), factors, true, measure, [from, to], seen).run();
+            let collector = Collector { worst: &mut worst, share, visit };
+            Search::new(self.bare(), factors, true, measure, [from, to], collector).run();
         } else {
             worst.note(from, self.steady(from).largest(self.bare(), from, measure));
             visit(worst);
@@ -108,8 +108,8 @@ impl Coupled {
     }
 }
 
-/// What a search keeps: the largest value, and each place that may have at least a share of it.
-struct Seen<'a> {
+/// Collects the results of a search: the largest value, and each candidate for at least a share of it.
+struct Collector<'a> {
     worst: &'a mut Worst,
     share: f64,
     visit: &'a mut dyn FnMut(Worst),
@@ -122,14 +122,14 @@ struct Search<'a> {
     damper: bool,
     /// The quantity to be maximised, a multiple of `V / M` or of its square root.
     measure: Measure,
-    /// Whether it is the force on a moving ground: what the masses are accelerated by, `ω² |m1 X1 + m2 X2|`.
+    /// Whether it is the force on a moving ground, the inertia of both masses, `ω² |m1 X1 + m2 X2|`.
     inertia: bool,
     /// Amplitude of the force, N, over `u^power` and the root of `weight`.
     force: f64,
     power: i32,
     weight: Option<[f64; 2]>,
     band: [f64; 2],
-    seen: Seen<'a>,
+    collector: Collector<'a>,
 }
 
 impl<'a> Search<'a> {
@@ -139,7 +139,7 @@ impl<'a> Search<'a> {
         damper: bool,
         measure: Measure,
         band: [f64; 2],
-        seen: Seen<'a>,
+        collector: Collector<'a>,
     ) -> Self {
         let (force, power, weight) = match bare.source() {
             Source::Harmonic(of, size) => (
@@ -151,10 +151,10 @@ impl<'a> Search<'a> {
         };
         let inertia = weight.is_some() && measure == Measure::GroundForce;
         let factors = if inertia && damper { factors.of_both_masses() } else { factors };
-        Self { bare, factors, damper, measure, inertia, force, power, weight, band, seen }
+        Self { bare, factors, damper, measure, inertia, force, power, weight, band, collector }
     }
 
-    /// Looks at every cut of the band, then at every maximum between two cuts that can be higher.
+    /// Evaluates every cut of the band, then every maximum between two cuts that can be higher.
     fn run(&mut self) {
         let [from, to] = self.band.map(|end| self.factors.end(end));
         let inside =
@@ -181,7 +181,7 @@ impl<'a> Search<'a> {
                 self.factors.piece(b, a)
             };
             let [v, m] = piece.bounds(numerator);
-            if self.value(numerator, v / m) > self.seen.share * self.seen.worst.value {
+            if self.value(numerator, v / m) > self.collector.share * self.collector.worst.value {
                 piece.falls(numerator, &mut |s| self.note(&piece, numerator, s));
             }
         }
@@ -191,26 +191,26 @@ impl<'a> Search<'a> {
         let [from, to] = self.band;
         let frequency = (piece.u(s) * self.factors.unit).sqrt().clamp(from, to);
         let value = self.value(numerator, piece.ratio(numerator, s));
-        self.seen.worst.note(frequency, value);
-        (self.seen.visit)(Worst { value, frequency });
+        self.collector.worst.note(frequency, value);
+        (self.collector.visit)(Worst { value, frequency });
     }
 
-    /// `V` from a cut on to the next.
+    /// `V` between a cut and the next.
     fn numerator(&self, from: &Point) -> Numerator {
         // Below its own frequency the structure's spring holds the largest energy, above it its mass.
         let by_square = self.measure == Measure::Velocity
             || self.measure == Measure::Energy && from.past(&self.factors.primary) >= 0.0;
-        let own = match self.measure {
+        let of_measure = match self.measure {
             Measure::GroundForce if !self.inertia => Some(ground(self.bare, self.factors.unit)),
             _ if by_square => Some([0.0, 1.0]),
             _ => None,
         };
         let by_fourth = matches!(self.measure, Measure::Acceleration | Measure::Stroke) || self.inertia;
         let fourth = if by_fourth { 2 } else { 0 };
-        let (power, weight) = match (self.weight, own) {
-            // Of two weights the one that is a power of u counts as such.
+        let (power, weight) = match (self.weight, of_measure) {
+            // Of two weights, that of the measure is u: it counts as a power.
             (Some(weight), Some(_)) => (1, Some(weight)),
-            (weight, own) => (0, weight.or(own)),
+            (weight, of_measure) => (0, weight.or(of_measure)),
         };
         Numerator {
             power: self.power + fourth + power,
@@ -224,7 +224,7 @@ impl<'a> Search<'a> {
         let unit = self.factors.unit;
         let amplitude = self.force / (m1 * unit);
         let size = amplitude * ratio.sqrt();
-        // Whether the spring or the mass holds the energy shows in the numerator, see there.
+        // The numerator shows whether the spring or the mass holds the energy, see `numerator`.
         let springs = numerator.power == self.power && numerator.weight == self.weight.unwrap_or([1.0, 0.0]);
         match self.measure {
             Measure::Energy if springs => 0.5 * k1 * amplitude * amplitude * ratio,
@@ -237,7 +237,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// `[k1², c1²]` by which `1` and `u` make up `|k1 + iω c1|²`.
+/// `[k1², c1²]`, the weights of `1` and `u` in `|k1 + iω c1|²`.
 fn ground(bare: &Bare, unit: f64) -> [f64; 2] {
     [bare.k1 * bare.k1, bare.c1 * bare.c1 * unit]
 }

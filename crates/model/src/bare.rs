@@ -21,7 +21,7 @@ pub struct Bare {
     amplitude: f64,
     phase: f64,
     lead: f64,
-    /// The stretch of time that it is to stay in.
+    /// The stretch of time to which it is confined, see [`Self::during`].
     stays: Option<Stretch>,
 }
 
@@ -68,7 +68,7 @@ impl Bare {
         }
     }
 
-    /// The force per unit of what is given in time: an acceleration a of the base is the force -m1 a in coordinates that move with it.
+    /// The force per unit of a history: an acceleration a of the base is the force -m1 a in coordinates that move with it.
     fn force_of(&self, history: &History) -> f64 {
         match history.of {
             Of::Force => 1.0,
@@ -76,7 +76,7 @@ impl Bare {
         }
     }
 
-    /// What is given in time, if anything is.
+    /// The history that forces it, if one does.
     pub fn history(&self) -> Option<&History> {
         self.source.history()
     }
@@ -87,7 +87,7 @@ impl Bare {
     }
 
     /// The stretch of time at `t` (s) in which the force goes on as one solution of its equation, with the force at its start; at a jump the
-    /// stretch that begins there. None of a harmonic force, which has one alone.
+    /// stretch that begins there. None for a harmonic force, which has a single one.
     pub fn stretch(&self, t: f64) -> Option<Stretch> {
         let history = self.history()?;
         if self.stays.is_some() {
@@ -102,7 +102,7 @@ impl Bare {
         self.turned(stretch.begin, t - stretch.from)
     }
 
-    /// `[P cos(ωt + φ), P sin(ωt + φ)]` (N), or what takes its place under a history, `elapsed` seconds after it was this.
+    /// `[P cos(ωt + φ), P sin(ωt + φ)]` (N), or its counterpart under a history, `elapsed` seconds after it was `[f, s]`.
     pub fn turned(&self, [f, s]: Excitation, elapsed: f64) -> Excitation {
         if [f, s] == [0.0; 2] {
             return [0.0; 2];
@@ -114,18 +114,18 @@ impl Bare {
         [f * cos - s * sin, s * cos + f * sin]
     }
 
-    /// The samples of a force that has some.
+    /// The samples of the force, if it has any.
     pub fn sampled_force(&self) -> Option<SampledForce> {
         let history = self.history()?;
         Some(SampledForce::new(history.course.samples()?, self.force_of(history)))
     }
 
-    /// Until when they set the steps of a flight, s, see [`Course::paced_until`](crate::Course::paced_until).
+    /// The time (s) until which samples set the steps of a flight, see [`Course::paced_until`](crate::Course::paced_until).
     pub fn paced_until(&self) -> f64 {
         self.history().map_or(f64::INFINITY, |history| history.course.paced_until())
     }
 
-    /// The same as if a stretch of time, of its own, went on for ever.
+    /// This structure as if one of its stretches of time never ended.
     #[must_use]
     pub fn during(self, stretch: Stretch) -> Self {
         Self { stays: Some(Stretch { to: f64::INFINITY, ..stretch }), ..self }
@@ -139,7 +139,7 @@ impl Bare {
         }
     }
 
-    /// `[ω, ω again or 0]` of `df/dt = -ω s`, `ds/dt = ω f`, rad/s: how the force turns.
+    /// The two factors ω of `df/dt = -ω s` and `ds/dt = ω f`, rad/s; the second is 0 where the force is linear in time.
     pub fn turning(&self) -> [f64; 2] {
         [self.omega, self.returns]
     }
@@ -154,13 +154,13 @@ impl Bare {
         self.source.is_moving_base()
     }
 
-    /// The same under the force `P cos(ωt + φ)`, or on a base that moves by `Y cos(ωt + φ)`, φ in rad. Time still begins at 0.
+    /// This structure under the force `P cos(ωt + φ)`, or on a base that moves by `Y cos(ωt + φ)`, φ in rad. Time still begins at 0.
     #[must_use]
     pub fn with_phase(self, phase: f64) -> Self {
         Self { phase, ..self }
     }
 
-    /// Another mass under the same force.
+    /// This structure with another mass, under the same force.
     pub(crate) fn with_mass(self, m1: f64) -> Self {
         Self { m1, ..self }
     }
@@ -195,7 +195,7 @@ impl Bare {
         [0.0; 2]
     }
 
-    /// State at t = 0: at rest unless told otherwise.
+    /// State at t = 0: at rest unless the forcing has a start.
     pub fn start(&self) -> [f64; 2] {
         self.away.map_or(self.rest(), |start| [start.x1.get(), start.v1.get()])
     }
@@ -211,7 +211,7 @@ impl Bare {
         (a, [0.0, 1.0 / self.m1])
     }
 
-    /// The power that the structure's dashpot takes, W: `c1 (v1 - vb)²`, with the velocity `vb` of a moving base.
+    /// The power that the structure's dashpot dissipates, W: `c1 (v1 - vb)²`, with the velocity `vb` of a moving base.
     pub fn dashpot_loss(&self, [cos, sin]: Excitation, v1: f64) -> f64 {
         // The base moves by Y cos(ωt + φ), and pushes by the real part of (k1 + i ω c1) Y e^(i(ωt + φ)).
         let impedance = Complex::new(self.k1, self.omega * self.c1);
@@ -231,7 +231,7 @@ impl Bare {
         self.returns.max((self.k1 / self.m1).sqrt() + self.c1 / self.m1)
     }
 
-    /// What turns the force, in the symbols of a study file.
+    /// The rate of the force, in the symbols of a study file.
     pub(crate) fn turns_by(&self) -> &'static str {
         if self.history().is_some() { "1/duration" } else { "omega" }
     }
@@ -269,14 +269,14 @@ impl Bare {
         self.amplitude / self.m1.sqrt()
     }
 
-    /// The energy bound: the most energy that there can be after `t` seconds, J. `√(2E)` grows by at most
+    /// The energy bound: the largest possible energy after `t` seconds, J. `√(2E)` grows by at most
     /// [`Self::energy_norm_growth`], so from rest it is `(P t)² / (2 m1)`.
     pub fn most_energy(&self, t: f64) -> f64 {
         let [x1, v1] = self.start();
         0.5 * ((2.0 * self.primary_energy(x1, v1)).sqrt() + self.energy_norm_growth() * t).powi(2)
     }
 
-    /// A bound on `|x1|`, m, over a stretch of so many seconds that ends at `x1` and on which the primary energy is at most `e1`:
+    /// A bound on `|x1|`, m, over a stretch of `seconds` that ends at `x1` and on which the primary energy is at most `e1`:
     /// `√(2 E1 / k1)`, or what speeds of at most `√(2 E1 / m1)` allow.
     pub fn reach(&self, e1: f64, x1: f64, seconds: f64) -> f64 {
         (2.0 * e1 / self.k1).sqrt().min(x1.abs() + (2.0 * e1 / self.m1).sqrt() * seconds)

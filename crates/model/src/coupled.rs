@@ -42,16 +42,17 @@ pub struct Coupled {
     k2: f64,
     c2: f64,
     d: f64,
-    /// Where the walls are, relative to the structure, m: infinitely far of a damper without.
+    /// Positions of the walls relative to the structure, m; infinite without walls.
     walls: [f64; 2],
     hertz: [f64; 2],
-    /// What contacts lose.
+    /// The laws of contact losses.
     laws: [Law; 2],
-    /// R, m; 0 of a damper without Hertz's surfaces.
+    /// R, m; 0 without Hertz's surfaces.
     pub(crate) radius: f64,
     /// e of rigid walls.
     restitution: Option<f64>,
-    /// m2/m1 where the coordinates move with an accelerated base: as much of the force on the structure acts on the damper. 0 otherwise.
+    /// m2/m1 where the coordinates move with an accelerated base: the share of the force on the structure that acts on the damper. 0
+    /// otherwise.
     carried: f64,
 }
 
@@ -84,19 +85,19 @@ impl Coupled {
         }
     }
 
-    /// The same under the force `P cos(ωt + φ)`, φ in rad. Time still begins at 0.
+    /// This system under the force `P cos(ωt + φ)`, φ in rad. Time still begins at 0.
     #[must_use]
     pub fn with_phase(self, phase: f64) -> Self {
         Self { bare: self.bare.with_phase(phase), ..self }
     }
 
-    /// The same as if a stretch of time went on for ever, see [`Bare::during`].
+    /// This system as if a stretch of time never ended, see [`Bare::during`].
     #[must_use]
     pub fn during(&self, stretch: Stretch) -> Self {
         Self { bare: self.bare.during(stretch), ..self.clone() }
     }
 
-    /// The same structure without its damper.
+    /// The structure without its damper.
     pub fn bare(&self) -> &Bare {
         &self.bare
     }
@@ -106,7 +107,7 @@ impl Coupled {
         self.bare.excitation(t)
     }
 
-    /// `f/m1`, m/s²: what the motion of the base takes from every acceleration in coordinates that move with it; 0 in others.
+    /// `f/m1`, m/s²: the part of every acceleration that is due to coordinates moving with the base; 0 in fixed ones.
     pub fn frame_acceleration(&self, [force, _]: Excitation) -> f64 {
         if self.carried > 0.0 { force / self.bare.m1 } else { 0.0 }
     }
@@ -116,7 +117,7 @@ impl Coupled {
         [0.0, 0.0, self.d, 0.0]
     }
 
-    /// State at t = 0: at rest unless told otherwise, by default with the damper's spring at rest.
+    /// State at t = 0: at rest unless the forcing has a start, by default with the damper's spring at rest.
     pub fn start(&self) -> [f64; 4] {
         self.bare.away.map_or_else(|| self.rest(), |start| start.state(self.d))
     }
@@ -126,7 +127,7 @@ impl Coupled {
         self.bare.away.is_none_or(|start| start.x2.is_none())
     }
 
-    /// The energy bound with a damper; see [`Bare::most_energy`]. Walls store what an overlap at the start gives them.
+    /// The energy bound with a damper; see [`Bare::most_energy`]. An indentation at the start counts with its stored energy.
     pub fn most_energy(&self, t: f64) -> f64 {
         let start = (2.0 * self.total_energy(&self.start())).sqrt();
         0.5 * (start + self.energy_norm_growth() * t).powi(2)
@@ -142,8 +143,7 @@ impl Coupled {
         self.walls[0].is_finite()
     }
 
-    /// Position of a wall relative to the structure, m: 0 for the structure itself, `D + C` for the obstacle; infinitely far of a
-    /// damper without walls.
+    /// Position of a wall relative to the structure, m: 0 for the structure itself, `D + C` for the obstacle; infinite without walls.
     pub fn wall(&self, side: Side) -> f64 {
         self.walls[side as usize]
     }
@@ -153,7 +153,7 @@ impl Coupled {
         self.hertz[side as usize]
     }
 
-    /// What contacts with a wall lose.
+    /// The law of the loss of contacts with a wall.
     pub(crate) fn law(&self, side: Side) -> &Law {
         &self.laws[side as usize]
     }
@@ -181,7 +181,7 @@ impl Coupled {
         self.law(side).factor(|| self.half_square(side, q), w)
     }
 
-    /// Half of the square of the speed (m/s) of an undisturbed collision without loss that comes as far as the indentation `q²` (m).
+    /// Half of the square of the touch-down speed (m/s) of an undisturbed collision without loss that reaches the indentation `q²` (m).
     pub(crate) fn half_square(&self, side: Side, q: f64) -> f64 {
         0.4 * self.hertz(side) * self.inverse_effective_mass() * q.powi(5)
     }
@@ -191,8 +191,8 @@ impl Coupled {
         (self.radius * z.max(0.0)).sqrt()
     }
 
-    /// The largest pressure of a contact at an indentation `z` (m), N/m²: that of Hertz's theory. What a contact loses is not in it, since the
-    /// law of its loss is one of forces alone.
+    /// The largest pressure of a contact at an indentation `z` (m), N/m², by Hertz's theory. Losses are not included: their law is for
+    /// forces only.
     pub fn wall_pressure(&self, side: Side, z: f64) -> f64 {
         hertz_pressure(self.hertz(side), self.radius, z)
     }
@@ -316,7 +316,8 @@ impl Coupled {
         [stiff_1 + stiff_2, drag_1 + drag_2]
     }
 
-    /// Both contact forces act against the indentation and its rate, so `∂(F1 - F2)/∂(x2 - x1) = -slope`, and the same by the speeds.
+    /// Both contact forces act against the indentation and its rate, so `∂(F1 - F2)/∂(x2 - x1) = -slope` and
+    /// `∂(F1 - F2)/∂(v2 - v1) = -drag`.
     fn jacobian_with(&self, [slope, drag]: [f64; 2]) -> SMatrix<f64, 4, 4> {
         let Bare { m1, c1, k1, .. } = self.bare;
         let (k, c) = (self.k2 + slope, self.c2 + drag);
@@ -336,7 +337,7 @@ impl Coupled {
         [0.0, on_structure, 0.0, if self.carried > 0.0 { on_structure } else { 0.0 }]
     }
 
-    /// The numbers of the steady response: `(m2, k2, c2)`.
+    /// `(m2, k2, c2)`, for the steady response.
     pub(crate) fn damper(&self) -> (f64, f64, f64) {
         (self.m2, self.k2, self.c2)
     }

@@ -51,13 +51,13 @@ struct InFile {
     contact: Option<Contact>,
 }
 
-/// Why what a file says is no damper.
+/// Why the fields of a file do not describe a damper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("missing field `{0}`: a damper in a cavity has D, C and contact, one without walls has none of them")]
 struct Missing(&'static str);
 
 impl Damper {
-    /// Whether it has no spring: where it touches no wall it then repeats wherever it floats, and no such motion is alone.
+    /// Whether it has no spring. A periodic motion without contact can then be shifted freely, so it is not isolated.
     pub fn is_floating(&self) -> bool {
         self.stiffness.get() == 0.0
     }

@@ -6,7 +6,8 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// A damper's design: k2, c2 and, of a damper with walls, both gaps; what else is left out is that of the study's damper.
+/// A damper's design: k2, c2 and, for a damper with walls, both gaps. Other parameters that are left out keep the value of the study's
+/// damper.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "PerVariable<f64>", into = "PerVariable<f64>")]
 pub struct Design(PerVariable<f64>);
@@ -14,13 +15,13 @@ pub struct Design(PerVariable<f64>);
 /// The parameters that every design has.
 const NEEDED: [Parameter; 2] = [Parameter::K2, Parameter::C2];
 
-/// Why what a file says is no design.
+/// Why given values are not a valid design.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum NoDesign {
     /// A parameter that every design has is left out.
     #[error("missing field `{0}`")]
     Missing(Parameter),
-    /// A value that no damper can have.
+    /// A value out of its parameter's range.
     #[error("{0}: {1}")]
     OutOfRange(Parameter, OutOfRange),
 }
@@ -49,7 +50,7 @@ impl Design {
         Self::of_varied(damper, &[])
     }
 
-    /// The design of a damper with what else is varied.
+    /// The design of a damper, including all of `varied`.
     pub fn of_varied(damper: &Damper, varied: &[Parameter]) -> Self {
         let mut values = PerVariable::default();
         for parameter in Parameter::columns(varied) {
@@ -61,7 +62,7 @@ impl Design {
     /// From a value for each parameter that may be varied, in SI units; NaN for those that are left out.
     ///
     /// # Errors
-    /// The first value that no damper can have, with its parameter; one that may not be left out is refused as NaN.
+    /// The first value out of range, with its parameter; a required one that is left out is refused as NaN.
     pub fn new(value: impl Fn(Parameter) -> f64) -> Result<Self, (Parameter, OutOfRange)> {
         let mut values = PerVariable::default();
         for parameter in Parameter::VARIED {
@@ -73,7 +74,7 @@ impl Design {
         Self::checked(values)
     }
 
-    /// A design of values in the ranges of their parameters; else the first value that is not.
+    /// The design with these values, or the first value out of its parameter's range.
     fn checked(values: PerVariable<f64>) -> Result<Self, (Parameter, OutOfRange)> {
         for parameter in values.parameters() {
             let checked = values.get(parameter).map_or(Ok(()), |value| parameter.check(value));
@@ -99,11 +100,11 @@ impl Design {
         all
     }
 
-    /// A damper with this design, all else as it is in `damper`. What a damper without walls lacks is not given to it.
+    /// `damper` with this design. Parameters of walls are ignored if it has none.
     #[must_use]
     pub fn on(&self, mut damper: Damper) -> Damper {
         for parameter in self.0.parameters() {
-            // Its values are checked: a damper can have all of them but those of walls that it has not.
+            // The values are checked, so only those of missing walls can fail.
             let _: Result<(), Unsettable> = parameter.set_damper(&mut damper, self.get(parameter));
         }
         damper

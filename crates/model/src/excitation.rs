@@ -1,9 +1,9 @@
-//! The force at a moment, and the stretch of time in which it goes on as one.
+//! The force at a moment, and a stretch of time without jumps of it.
 
 /// The harmonic force and its quarter-turn: `[P cos(ωt + φ), P sin(ωt + φ)]`, N.
 ///
-/// The formulas of this crate take this pair instead of `t`, so that a caller who steps in time may turn it by a rotation instead
-/// of calling `cos` at every step. Of a force that is given in time ([`History`](crate::History)) it is `[f, -(df/dt) / ω]`.
+/// The formulas of this crate take this pair instead of `t`, so that a caller who steps in time may advance it by a rotation instead
+/// of calling `cos` at every step. For a [`History`](crate::History) it is `[f, -(df/dt) / ω]`.
 pub type Excitation = [f64; 2];
 
 /// A stretch of time between two jumps of the pair, with the pair at its start.

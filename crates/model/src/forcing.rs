@@ -33,7 +33,7 @@ pub enum Source {
     Harmonic(Amplitude, NonNegative),
     /// Nothing but a start away from rest.
     Decay(Start),
-    /// A force, or an acceleration of the base, that is given in time.
+    /// A force or an acceleration of the base, given as a function of time.
     History(History),
 }
 
@@ -48,7 +48,7 @@ impl Source {
         matches!(self, Self::Harmonic(of, _) if of.is_of_base())
     }
 
-    /// What is given in time, if anything is.
+    /// The history, if the forcing is one.
     pub fn history(&self) -> Option<&History> {
         if let Self::History(history) = self { Some(history) } else { None }
     }
@@ -60,17 +60,17 @@ impl Forcing {
         Self { source: Source::Harmonic(Amplitude::Force, amplitude), frequency, start: None }
     }
 
-    /// Whether it has no frequency: of a free decay, a pulse and a record. All there is of such a motion is in its run.
+    /// Whether it has no frequency: a free decay, a pulse or a record. Such a motion has no steady response beyond its run.
     pub fn is_transient(&self) -> bool {
         !self.source.is_harmonic()
     }
 
-    /// What is given in time, if anything is.
+    /// The history, if the forcing is one.
     pub fn history(&self) -> Option<&History> {
         self.source.history()
     }
 
-    /// When it ends, s: of a free decay at once, of a harmonic force never.
+    /// When it ends, s: at once for a free decay, never for a harmonic force.
     pub fn end(&self) -> f64 {
         match &self.source {
             Source::History(history) => history.course.end(),
@@ -79,7 +79,7 @@ impl Forcing {
         }
     }
 
-    /// The record that it names, if it does.
+    /// Its record, if it has one.
     pub fn record_mut(&mut self) -> Option<(Of, &mut Record)> {
         match &mut self.source {
             Source::History(History { of, course: Course::Record(record) }) => Some((*of, record)),
@@ -87,7 +87,7 @@ impl Forcing {
         }
     }
 
-    /// Where the motion starts; none at rest.
+    /// Where the motion starts; none if at rest.
     pub fn start(&self) -> Option<Start> {
         match self.source {
             Source::Decay(start) => Some(start),
@@ -95,7 +95,7 @@ impl Forcing {
         }
     }
 
-    /// Begins elsewhere.
+    /// Sets where the motion starts.
     pub fn begin(&mut self, at: Start) {
         match &mut self.source {
             Source::Decay(start) => *start = at,
@@ -103,8 +103,8 @@ impl Forcing {
         }
     }
 
-    /// What acts at `t` (s): the force on the structure, N, the displacement of the base, m, or its acceleration, m/s², whichever the forcing
-    /// is given as (of an imbalance its force); 0 of a free decay.
+    /// Value at `t` (s) of the quantity that the forcing gives: the force on the structure, N (also for an imbalance), the displacement of
+    /// the base, m, or its acceleration, m/s²; 0 for a free decay.
     pub fn at(&self, t: f64) -> f64 {
         let omega = self.frequency.get();
         match &self.source {

@@ -1,8 +1,7 @@
 //! A force, or an acceleration of the base, that is given in time: a pulse, or a record that is linear between its samples.
 //!
-//! Over a [`Stretch`] of time every one of them obeys `f'' = -ω² f`, a record with ω = 0. So its value and its slope are a pair like that
-//! of a harmonic force, and the exact flow, the bounds and the contacts of a harmonic force are those of a record; at known times the pair
-//! jumps.
+//! Over a [`Stretch`] of time each of them obeys `f'' = -ω² f`, a record with ω = 0. So its value and slope form a pair like that of a
+//! harmonic force, and the exact flow, the bounds and the contacts under a harmonic force apply. The pair jumps at known times.
 
 use crate::excitation::Stretch;
 use crate::made::{Form, Made, Recipe, Spectrum};
@@ -13,7 +12,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// What is given in time.
+/// A force or a base acceleration given as a function of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct History {
     /// What it acts on.
@@ -35,14 +34,14 @@ pub enum Of {
     BaseAcceleration,
 }
 
-/// How it goes on in time.
+/// The time course of a [`History`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Course {
-    /// A pulse from t = 0 on, and nothing after it.
+    /// A pulse from t = 0 on; zero after it.
     Pulse(Pulse),
-    /// Samples with straight lines between them, and nothing before the first and after the last.
+    /// Samples with straight lines between them; zero before the first and after the last.
     Record(Record),
-    /// Samples of a formula or of a spectrum, as a record's.
+    /// Samples of a formula or of a spectrum, joined like a record's.
     Made(Made),
 }
 
@@ -86,7 +85,7 @@ impl Of {
 }
 
 impl History {
-    /// The same with the other sign.
+    /// The history with the opposite sign.
     pub fn reversed(self) -> Option<Self> {
         let course = match self.course {
             Course::Pulse(pulse) => {
@@ -98,7 +97,7 @@ impl History {
         Some(Self { course, ..self })
     }
 
-    /// The same with every second sample of a record, and samples twice as far apart of a formula; none of a pulse.
+    /// The history at half its sample rate: every second sample of a record, or a formula sampled anew. None for a pulse.
     pub fn coarser(self) -> Option<Self> {
         let course = match self.course {
             Course::Pulse(_) => return None,
@@ -108,13 +107,13 @@ impl History {
         Some(Self { course, ..self })
     }
 
-    /// Another draw of a random force, so many seeds on; none of anything else.
+    /// Another draw of a random force, with `seeds` added to its seed; none for any other history.
     pub fn drawn_again(self, seeds: u64) -> Option<Self> {
         let Course::Made(made) = self.course else { return None };
         let Form::Spectrum(spectrum) = made.recipe().form.clone() else { return None };
         let form = Form::Spectrum(Spectrum { seed: spectrum.seed.wrapping_add(seeds), ..spectrum });
-        let again = Made::new(Recipe { form, ..made.recipe().clone() }).ok()?;
-        Some(Self { course: Course::Made(again), ..self })
+        let redrawn = Made::new(Recipe { form, ..made.recipe().clone() }).ok()?;
+        Some(Self { course: Course::Made(redrawn), ..self })
     }
 }
 
@@ -125,8 +124,8 @@ fn of_samples(samples: Samples) -> Course {
 }
 
 impl Course {
-    /// `[ω, ω again or 0]`, rad/s, of `df/dt = -ω s`, `ds/dt = ω f`: the pair of a half sine turns, and the second number of a straight
-    /// line stays, which is its slope in the units of ω = 1.
+    /// The two factors ω (rad/s) of `df/dt = -ω s` and `ds/dt = ω f`: equal for a half sine, whose pair rotates; 1 and 0 on a straight
+    /// line, where `s` is constant, minus the slope.
     pub(crate) fn turning(&self) -> [f64; 2] {
         match self {
             Self::Pulse(Pulse { shape: Shape::HalfSine, duration, .. }) => [PI / duration.get(); 2],
@@ -147,7 +146,7 @@ impl Course {
         }
     }
 
-    /// The field that gives it in a study.
+    /// The field of a study that defines it.
     pub(crate) fn given_by(&self) -> &'static str {
         match self {
             Self::Pulse(_) => "pulse",
@@ -161,7 +160,7 @@ impl Course {
         }
     }
 
-    /// The spectrum of which it is a draw, if it is one.
+    /// The spectrum from which it is drawn, if it is a draw.
     pub fn spectrum(&self) -> Option<&'static Spectrum> {
         match self {
             Self::Made(made) => match &made.recipe().form {
@@ -172,7 +171,7 @@ impl Course {
         }
     }
 
-    /// The samples of a course that has some.
+    /// The samples, if it has any.
     pub fn samples(&self) -> Option<Samples> {
         match self {
             Self::Pulse(_) => None,
@@ -192,7 +191,7 @@ impl Course {
         }
     }
 
-    /// Its value at `t` (s), N or m/s², by the pair of its stretch; at its end that before it.
+    /// Its value at `t` (s), N or m/s², from the pair of its stretch; at its end, the value just before.
     pub fn at(&self, t: f64) -> f64 {
         if t < 0.0 {
             return 0.0;
@@ -203,8 +202,8 @@ impl Course {
         if returns == 0.0 { f - turned * s } else { f * turned.cos() - s * turned.sin() }
     }
 
-    /// Until when a flight takes a step for each of its pieces, s. Those of a record are about as long as steps of the motion; those of a formula are as
-    /// short as its error asks for, and not to be kept once it is over.
+    /// The time (s) until which a flight takes a step for each of its pieces. Pieces of a record are about as long as steps of the motion;
+    /// those of a formula are as short as its error requires, a pace not worth keeping once it is over.
     pub fn paced_until(&self) -> f64 {
         if let Self::Made(_) = self { self.end() } else { f64::INFINITY }
     }

@@ -1,4 +1,4 @@
-//! What a contact loses: the factor of Hertz's force, which is never below zero (`docs/theory.md`, "Contacts that lose energy").
+//! The loss of a contact: a factor on Hertz's force, never below zero (`docs/theory.md`, "Contacts that lose energy").
 //!
 //! Hunt and Crossley: `1 + λ ż`, with one λ. K. H. Hunt and F. R. E. Crossley, Coefficient of restitution interpreted as damping in
 //! vibroimpact, J. Appl. Mech. 42 (1975) 440. With the same restitution at every speed: see [`Restoring`].
@@ -53,7 +53,7 @@ struct InFile {
     at: Option<Positive>,
 }
 
-/// Why what a file says is no loss.
+/// Why the fields of a file do not describe a loss.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 enum Refused {
     #[error("give `lambda` (s/m) or `restitution`, not both")]
@@ -132,13 +132,13 @@ impl Loss {
     }
 }
 
-/// How far below zero `1 + λ w` may be by rounding where the force ends.
+/// How far below zero rounding may bring `1 + λ w` where the force ends.
 const ROUNDING: f64 = 1e-9;
 
-/// The law of a contact, as the equations of motion have it.
+/// The law of a contact's loss in the equations of motion.
 #[derive(Clone, Debug)]
 pub(crate) enum Law {
-    /// `1 + λ w`, and nothing where that would pull.
+    /// `1 + λ w`; zero where that would pull.
     Damping(f64),
     Restoring(Arc<Restoring>),
 }
@@ -161,7 +161,8 @@ impl Law {
     }
 
     /// The factor at a rate of indentation `w` (m/s) and `s`, `S = (2/5) κ z^(5/2)` (m²/s²) with `κ = K (1/m1 + 1/m2)`, half of the square of
-    /// the speed of an undisturbed collision without loss that comes as far. Where `1 + λ w = 0` to rounding, the slope is that of the side on which the force acts.
+    /// the touch-down speed of an undisturbed collision without loss that reaches `z`. Where `1 + λ w = 0` to rounding, the slope is that
+    /// of the side on which the force acts.
     #[inline]
     pub(crate) fn factor(&self, s: impl FnOnce() -> f64, w: f64) -> Factor {
         match self {
@@ -177,8 +178,8 @@ impl Law {
         }
     }
 
-    /// The derivative of the factor by the number of the law itself, λ or e.
-    pub(crate) fn by_own(&self, s: impl FnOnce() -> f64, w: f64) -> f64 {
+    /// The derivative of the factor by the law's parameter, λ or e.
+    pub(crate) fn by_parameter(&self, s: impl FnOnce() -> f64, w: f64) -> f64 {
         match self {
             Self::Damping(lambda) if 1.0 + lambda * w > -ROUNDING => w,
             Self::Damping(_) => 0.0,
@@ -229,7 +230,7 @@ mod tests {
 
     #[test]
     fn exact_limits_of_small_and_large_losses() {
-        // Hunt and Crossley's e = 1 - 2 χ / 3, and a speed after the collision that tends to 1/λ.
+        // Hunt and Crossley's limit e = 1 - 2 χ / 3, and a speed after the collision that tends to 1/λ.
         for chi in [1e-4, 1e-6, 1e-8] {
             let loss = Loss::Damping(NonNegative::new(chi).expect("a number"));
             assert!(((1.0 - loss.restitution(1.0)) / (2.0 / 3.0 * chi) - 1.0).abs() < chi + 1e-8, "{chi}");

@@ -1,4 +1,4 @@
-//! Forces that a formula or a spectrum gives: they become samples with straight lines between them.
+//! Forces given by a formula or a spectrum: they become samples with straight lines between them.
 //!
 //! Sample `i` is `f - h²/12 f''` and not `f`: then a straight line over each piece has the impulse of the force itself to the fifth order of
 //! the distance `h`, and the motion is that of the force to the fourth. The force itself is off by no more than [`Recipe::error`].
@@ -17,7 +17,7 @@ pub struct Made {
     samples: Samples,
 }
 
-/// What gives the samples of a force.
+/// The definition of a sampled force.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recipe {
     /// Its form.
@@ -26,7 +26,7 @@ pub struct Recipe {
     pub unit: Unit,
     /// How long it lasts from t = 0 on, s.
     pub duration: Positive,
-    /// The time between two samples, s, if it is given.
+    /// The time between two samples, s, if given.
     pub step: Option<Positive>,
 }
 
@@ -95,7 +95,7 @@ pub struct Spectrum {
 /// Why there are no samples.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Unmade {
-    /// A spectrum that is no table.
+    /// A spectrum without a valid table.
     #[error(
         "`spectrum`: {0} frequencies with {1} densities are not allowed here: give two or more frequencies that grow, and a density for each, or \
          `white` with `to` alone"
@@ -114,21 +114,21 @@ pub enum Unmade {
         /// As given or chosen, s.
         step: f64,
     },
-    /// They are no record.
+    /// Samples that are not a valid record.
     #[error("`step`: {0}")]
     Samples(#[from] BadSamples),
 }
 
-/// The share of the sum of all amplitudes by which a formula may be off, where no step is given; a pulse, which is short, by less.
+/// Allowed error of a formula where no step is given, as a share of the sum of all amplitudes; less for a pulse, which is short.
 const ERROR: f64 = 1e-5;
 const ERROR_OF_A_PULSE: f64 = 1e-6;
-/// The distance of the samples of a spectrum times its largest frequency, where none is given: 31 samples in its shortest period.
+/// The step of the samples of a spectrum times its largest frequency, where none is given: 31 samples in its shortest period.
 const FINE: f64 = 0.2;
-/// The most samples that are made.
+/// Maximum number of samples.
 const MOST: f64 = 1e7;
-/// The most terms of a spectrum that are summed.
+/// Maximum number of summed terms, over all samples.
 const MOST_TERMS: f64 = 2e9;
-/// How often a term begins anew while it is turned from sample to sample.
+/// Number of samples over which a term is advanced by rotation before it is evaluated anew.
 const BLOCK: usize = 64;
 
 /// `amplitude cos(phase + omega t + rate t²/2)`.
@@ -152,7 +152,7 @@ impl Made {
         Ok(Self { recipe: kept(&RECIPES, recipe), samples })
     }
 
-    /// What it is made of.
+    /// Its recipe.
     pub fn recipe(&self) -> &'static Recipe {
         self.recipe
     }
@@ -162,7 +162,7 @@ impl Made {
         self.samples
     }
 
-    /// The same recipe with samples so many times as dense.
+    /// The force of the same recipe with samples `times` as dense.
     ///
     /// # Errors
     /// [`Unmade`].
@@ -179,14 +179,14 @@ impl PartialEq for Made {
 }
 
 impl Recipe {
-    /// A bound on the error of the force between two samples and at them, N or m/s²: `5/24 h² max |f''|`, of which `h²/8` is that of a
-    /// straight line and `h²/12` what is taken for the sake of the impulse.
+    /// A bound on the error of the force between two samples and at them, N or m/s²: `5/24 h² max |f''|`, of which `h²/8` is due to the
+    /// straight line and `h²/12` to the correction for the impulse.
     pub fn error(&self) -> f64 {
         let [_, curvature] = self.sizes();
         5.0 / 24.0 * self.pieces().1.powi(2) * curvature
     }
 
-    /// Bounds on the force and on its second derivative: those of its terms together.
+    /// Bounds on the force and on its second derivative: the sums of its terms' bounds.
     fn sizes(&self) -> [f64; 2] {
         let end = self.duration.get();
         let bounds = |term: Term| {
@@ -208,7 +208,7 @@ impl Recipe {
                 (error * 24.0 / 5.0 * force / curvature).sqrt()
             }
         };
-        // Of a constant the longest is infinite, and not a number of one that is zero.
+        // For a constant `longest` is infinite, for zero NaN.
         let count = (duration / longest.min(duration)).ceil().max(1.0);
         (count, duration / count)
     }
@@ -240,7 +240,7 @@ impl Recipe {
         }
     }
 
-    /// The terms whose sum it is, SI units.
+    /// The terms of the sum, SI units.
     fn terms(&self) -> Vec<Term> {
         let (size, duration) = (self.unit.1, self.duration.get());
         let harmonic =
@@ -312,7 +312,7 @@ impl Spectrum {
         [self.omega.first(), self.omega.last()].map(|omega| omega.map_or(0.0, |omega| omega.get()))
     }
 
-    /// So many that the sum repeats after the duration and not before.
+    /// The number of intervals with which the sum does not repeat before the duration ends.
     fn intervals(&self, duration: f64) -> f64 {
         let [from, to] = self.ends();
         ((to - from) * duration / TAU).ceil().max(self.omega.len() as f64)
@@ -339,7 +339,7 @@ impl Spectrum {
     }
 }
 
-/// The next number of a draw, from 0 to below 1: SplitMix64 (G. L. Steele, D. Lea and C. H. Flood, Proc. OOPSLA 2014, 453).
+/// The next random number, from 0 to below 1: SplitMix64 (G. L. Steele, D. Lea and C. H. Flood, Proc. OOPSLA 2014, 453).
 pub fn drawn_number(state: &mut u64) -> f64 {
     *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
     let mut mixed = *state;

@@ -1,4 +1,4 @@
-//! The catalogue of quantities: each largest value of a motion once, with its name, words and unit.
+//! The catalogue of quantities: each measure of a motion once, with its name, words and unit.
 
 use crate::unit::{ACCELERATION, ENERGY, FORCE, LENGTH, MODULUS, TIME, VELOCITY};
 use crate::{Rms, Unit};
@@ -57,13 +57,13 @@ impl Measure {
         all
     };
 
-    /// Those that a structure has without a damper, too: the first of [`Self::ALL`].
+    /// Those that exist without a damper, too: the first of [`Self::ALL`].
     pub const OF_STRUCTURE: [Self; 5] =
         [Self::Energy, Self::Displacement, Self::Velocity, Self::Acceleration, Self::GroundForce];
-    /// Those that only a damper has.
+    /// Those that need a damper.
     pub const OF_DAMPER: [Self; 3] = [Self::Stroke, Self::ContactForce, Self::ContactPressure];
 
-    /// Name in files, short name, words, SI unit: its own entry of the catalogue.
+    /// Name in files, short name, words, SI unit: its entry of the catalogue.
     const fn entry(self) -> [&'static str; 4] {
         match self {
             Self::Energy => ["E1max", "E1", "the largest energy of the structure", "J"],
@@ -93,7 +93,7 @@ impl Measure {
         self.entry()[0]
     }
 
-    /// Its name where room is short.
+    /// Its name where space is short.
     pub const fn short_name(self) -> &'static str {
         self.entry()[1]
     }
@@ -132,7 +132,7 @@ impl Measure {
         matches!(self, Self::ContactForce | Self::ContactPressure)
     }
 
-    /// The largest value of a run: itself, that in the place of which a stationary motion has it, or that which a decay time counts from.
+    /// The corresponding largest value of a run: itself, that of the quantity whose mean this is, or the energy for a decay time.
     pub const fn of_run(self) -> Self {
         match self {
             Self::DecayTime => Self::Energy,
@@ -162,12 +162,12 @@ impl Measure {
         }
     }
 
-    /// All that may be made small: what a run has, and what a stationary motion has.
+    /// All that may be minimised: those of runs, then those of stationary motions.
     pub fn every() -> impl Iterator<Item = Self> + Clone {
         Self::OF_RUN.into_iter().chain(Rms::ALL.map(Self::Stationary))
     }
 
-    /// Name, words and unit, as schemas describe it.
+    /// Name, words and unit: its description in schemas.
     pub fn sentence(self) -> String {
         format!("{}, {}, {}.", self.name(), self.words(), self.unit())
     }
@@ -248,7 +248,7 @@ impl FromIterator<Measure> for PerMeasure<bool> {
 }
 
 impl PerMeasure<f64> {
-    /// The larger of each.
+    /// The larger value of each measure.
     #[must_use]
     pub fn max(self, other: Self) -> Self {
         Self(std::array::from_fn(|i| self.0[i].max(other.0[i])))

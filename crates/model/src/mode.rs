@@ -1,9 +1,9 @@
-//! A structure of many degrees of freedom by its modes, and the one that a damper works on as a primary structure.
+//! Modes of a structure with many degrees of freedom, and the one that a damper acts on as a primary structure.
 
 use crate::{NonNegative, OutOfRange, Positive, Primary};
 use nalgebra::Complex;
 
-/// A mode with its shape where the damper hangs. SI units.
+/// A mode with its shape at the damper. SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mode {
     /// Angular frequency without damping, rad/s.
@@ -17,7 +17,7 @@ pub struct Mode {
 }
 
 impl Mode {
-    /// The oscillator that this mode is at the damper: a force there moves it by `q φ` with `M (q'' + 2ζω q' + ω² q) = φ F`, so
+    /// The oscillator equivalent to this mode at the damper: a force F there moves it by `q φ` with `M (q'' + 2ζω q' + ω² q) = φ F`, so
     /// `m1 = M/φ²`, `c1 = 2ζω m1` and `k1 = ω² m1`.
     ///
     /// # Errors
@@ -31,20 +31,21 @@ impl Mode {
         })
     }
 
-    /// The dynamic stiffness of the mode in its own coordinate at the angular frequency `omega` (rad/s), N/m; zero at the resonance of one without damping.
+    /// The dynamic stiffness in the modal coordinate at the angular frequency `omega` (rad/s), N/m; zero at an undamped resonance.
     fn stiffness(&self, omega: f64) -> Complex<f64> {
-        let own = self.omega.get();
-        self.mass.get() * Complex::new(own * own - omega * omega, 2.0 * self.zeta.get() * own * omega)
+        let natural = self.omega.get();
+        self.mass.get()
+            * Complex::new(natural * natural - omega * omega, 2.0 * self.zeta.get() * natural * omega)
     }
 
-    /// The displacement at the damper by a harmonic force of 1 N there at the angular frequency `omega` (rad/s), m; not finite at the resonance of a mode
-    /// without damping.
+    /// The displacement at the damper due to a harmonic force of 1 N there at the angular frequency `omega` (rad/s), m; not finite at an
+    /// undamped resonance.
     pub fn flexibility(&self, omega: f64) -> Complex<f64> {
         self.shape * self.shape / self.stiffness(omega)
     }
 }
 
-/// What the other modes add to the displacement at the damper at the frequency of mode `which`, as a share of its own.
+/// Displacement at the damper due to the other modes at the frequency of mode `which`, relative to that due to `which`.
 pub fn left_out(modes: &[Mode], which: usize) -> f64 {
     let Some(own) = modes.get(which) else { return f64::NAN };
     let omega = own.omega.get();
@@ -53,8 +54,8 @@ pub fn left_out(modes: &[Mode], which: usize) -> f64 {
     others.sum::<Complex<f64>>().norm() * own.stiffness(omega).norm() / (own.shape * own.shape)
 }
 
-/// The mode that moves the damper's place most by a force there at its own frequency: of the largest `φ² / (2ζ M ω²)`, the first of
-/// equal ones. None of an empty list.
+/// The mode that responds most at the damper to a force there at the mode's own frequency: the largest `φ² / (2ζ M ω²)`, on a tie the
+/// first. None for an empty list.
 pub fn most_felt(modes: &[Mode]) -> Option<usize> {
     let size = |mode: &Mode| match mode.shape {
         0.0 => 0.0,

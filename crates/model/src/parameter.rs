@@ -89,7 +89,7 @@ impl Parameter {
     };
     /// Those that the paper varies, in the order of its tables.
     pub const PAPER: [Self; 4] = [Self::K2, Self::C2, Self::D, Self::C];
-    /// Those that set the size of the forcing, of which a scene has one.
+    /// Those that set the size of a harmonic forcing, which has one of them.
     pub const AMPLITUDES: [Self; Amplitude::ALL.len()] = {
         let mut all = [Self::P; Amplitude::ALL.len()];
         let mut i = 0;
@@ -158,12 +158,12 @@ impl Parameter {
         self.entry().2
     }
 
-    /// The SI unit; empty of a number without one.
+    /// The SI unit; empty for a dimensionless number.
     pub const fn unit(self) -> &'static str {
         self.units()[0].0
     }
 
-    /// Symbol, words and unit, as schemas describe it.
+    /// Symbol, words and unit: its description in schemas.
     pub fn sentence(self) -> String {
         let unit = self.unit();
         format!("{}, {}{}{unit}.", self.symbol(), self.words(), if unit.is_empty() { "" } else { ", " })
@@ -194,19 +194,19 @@ impl Parameter {
         Self::VARIED.into_iter().find(|parameter| parameter.symbol() == symbol)
     }
 
-    /// The symbols of those by which motions have derivatives, with `separator` between them.
+    /// The symbols of the parameters with [`Self::has_derivative`], with `separator` between them.
     pub fn differentiable(separator: &str) -> String {
         let all = Self::ALL.into_iter().filter(|parameter| parameter.has_derivative());
         all.map(Self::symbol).collect::<Vec<_>>().join(separator)
     }
 
-    /// Whether motions have derivatives by it.
+    /// Whether motions can be differentiated with respect to it.
     pub const fn has_derivative(self) -> bool {
         !matches!(self, Self::M1)
             && (!self.is_of_contact() || matches!(self, Self::R | Self::Lambda | Self::Restitution))
     }
 
-    /// The columns of a table of designs in which these are varied: the paper's, and what else is varied.
+    /// The parameter columns of a table of designs: the paper's, then the others of `varied`.
     pub fn columns(varied: &[Self]) -> Vec<Self> {
         let others = varied.iter().copied().filter(|parameter| !Self::PAPER.contains(parameter));
         Self::PAPER.into_iter().chain(others).collect()
@@ -215,7 +215,7 @@ impl Parameter {
     /// A value as it was typed, in the SI unit: without a unit, or with one of [`Self::units`].
     ///
     /// # Errors
-    /// It is no such number; the message says what to give.
+    /// `text` is no such number; the message says what to give.
     pub fn read(self, text: &str) -> Result<f64, String> {
         unit::read(text, self.units())
     }
@@ -232,8 +232,8 @@ impl Amplitude {
         }
     }
 
-    /// The transmissibility as a formula in symbols: of the force on the ground by the force on the structure, or of the displacement of the
-    /// structure by that of the base.
+    /// The transmissibility as a formula in symbols: force on the ground over force on the structure, or displacement of the structure
+    /// over that of the base.
     pub fn transmissibility(self) -> String {
         let symbol = self.parameter().symbol();
         let omega = match self.power().abs() {

@@ -1,4 +1,4 @@
-//! Something for some of the parameters that a search may vary; in a file, an object with their symbols.
+//! Optional values for the parameters that a search may vary; in a file, an object keyed by their symbols.
 
 use crate::Parameter;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -10,7 +10,7 @@ use std::marker::PhantomData;
 const COUNT: usize = Parameter::VARIED.len();
 const SYMBOLS: [&str; COUNT] = Parameter::VARIED_SYMBOLS;
 
-/// Something for each of [`Parameter::VARIED`], or nothing.
+/// An optional value for each of [`Parameter::VARIED`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PerVariable<T>([Option<T>; COUNT]);
 
@@ -20,31 +20,31 @@ impl<T> Default for PerVariable<T> {
     }
 }
 
-/// The place of a parameter among those that may be varied.
-const fn number(parameter: Parameter) -> Option<usize> {
-    let number = parameter as usize;
-    if number < COUNT { Some(number) } else { None }
+/// The index of a parameter in [`Parameter::VARIED`].
+const fn index(parameter: Parameter) -> Option<usize> {
+    let index = parameter as usize;
+    if index < COUNT { Some(index) } else { None }
 }
 
 impl<T: Copy> PerVariable<T> {
-    /// What is given for a parameter.
+    /// The value for a parameter, if any.
     pub fn get(&self, parameter: Parameter) -> Option<T> {
-        number(parameter).and_then(|i| self.0[i])
+        index(parameter).and_then(|i| self.0[i])
     }
 
-    /// Gives something, or nothing, for a parameter; of one that no search may vary it is not kept.
+    /// Sets or clears the value for a parameter; ignored for one that no search may vary.
     pub fn set(&mut self, parameter: Parameter, value: Option<T>) {
-        if let Some(i) = number(parameter) {
+        if let Some(i) = index(parameter) {
             self.0[i] = value;
         }
     }
 
-    /// What is given for a parameter, to be changed.
+    /// The value for a parameter, mutable.
     pub fn get_mut(&mut self, parameter: Parameter) -> Option<&mut T> {
-        number(parameter).and_then(|i| self.0[i].as_mut())
+        index(parameter).and_then(|i| self.0[i].as_mut())
     }
 
-    /// The parameters for which something is given, in the order of the paper's tables.
+    /// The parameters that have a value, in the order of the paper's tables.
     pub fn parameters(&self) -> Vec<Parameter> {
         Parameter::VARIED.into_iter().filter(|&parameter| self.get(parameter).is_some()).collect()
     }
@@ -111,7 +111,7 @@ impl<T: JsonSchema> JsonSchema for PerVariable<T> {
     }
 }
 
-/// The fields of a schema: one for each parameter that a search may vary, described.
+/// Properties of a schema: one, with its description, for each parameter that a search may vary.
 pub(crate) fn properties(schema: impl Fn(Parameter) -> Schema) -> serde_json::Map<String, serde_json::Value> {
     let field = |parameter: Parameter| {
         let mut schema = schema(parameter);

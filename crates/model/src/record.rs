@@ -10,13 +10,13 @@ use std::sync::{Mutex, PoisonError};
 
 /// A record that a study names, and its samples once they are read.
 ///
-/// Scenes are plain numbers that are copied freely. So what a record says is kept once, until the program ends, however often it is read, and
-/// with whatever factor.
+/// Scenes are copied freely. So the contents of a record are stored once, until the program ends, however often they are read and with
+/// whatever factor.
 #[derive(Clone, Copy, Debug)]
 pub struct Record {
     source: &'static RecordFile,
     samples: Option<Samples>,
-    /// Whether a study is written with the samples and not with the name of the file.
+    /// Whether a study is written with the samples instead of the file's name.
     whole: bool,
 }
 
@@ -27,9 +27,9 @@ pub struct RecordFile {
     pub file: String,
     /// The column of the values; the second if none is named.
     pub column: Option<Column>,
-    /// The unit of the values, if one is given: that of the file, or the SI unit.
+    /// The unit of the values; if none is given, that of the file or the SI unit.
     pub unit: Option<Unit>,
-    /// By how much they are multiplied, if it is given: 1.
+    /// The factor on the values; 1 if none is given.
     pub scale: Option<Finite>,
 }
 
@@ -43,8 +43,8 @@ pub enum Column {
     Name(String),
 }
 
-/// Samples in SI units: of a table, every one or every so many, times a factor. So a record that is scaled, of the other sign, or of another
-/// sample rate takes no memory of its own.
+/// Samples in SI units: each `every`th value of a table, times a factor. So a record that is scaled, reversed or resampled takes no memory
+/// of its own.
 #[derive(Clone, Copy, Debug)]
 pub struct Samples {
     table: &'static Table,
@@ -53,7 +53,7 @@ pub struct Samples {
     bounds: [f64; 2],
 }
 
-/// What samples are of.
+/// The stored numbers that [`Samples`] refer to.
 #[derive(Debug, PartialEq)]
 struct Table {
     times: Times,
@@ -68,22 +68,22 @@ enum Times {
     At(Vec<f64>),
 }
 
-/// Why samples are no record.
+/// Why samples are not a valid record.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum BadSamples {
-    /// Two samples are the least.
+    /// Fewer than two samples.
     #[error("it has {0} sample{s}: give at least two", s = if *.0 == 1 { "" } else { "s" })]
     Few(usize),
-    /// A value that is none.
+    /// A value or a time that is not finite.
     #[error("sample {0}: {1} is not allowed here: give a finite number")]
     NotFinite(usize, f64),
-    /// The run begins at t = 0.
+    /// A first time below zero.
     #[error("sample 1: the time {0} s is not allowed here: give 0 or more")]
     Before(f64),
-    /// Times increase.
+    /// Times that do not increase.
     #[error("sample {0}: the time {1} s does not come after the time {2} s of the sample before it")]
     Unsorted(usize, f64, f64),
-    /// A slope that is no number.
+    /// Times too close for a finite slope.
     #[error(
         "sample {0}: it comes only {1:e} s after the sample before it, so that the slope between them is not finite: give times farther apart"
     )]
@@ -93,7 +93,7 @@ pub enum BadSamples {
 static FILES: Mutex<Vec<&'static RecordFile>> = Mutex::new(Vec::new());
 static TABLES: Mutex<Vec<&'static Table>> = Mutex::new(Vec::new());
 
-/// The one that is kept and equal to `new`.
+/// Interns a value: returns the stored one that is equal to `new`.
 pub(crate) fn kept<T: PartialEq>(all: &Mutex<Vec<&'static T>>, new: T) -> &'static T {
     let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(same) = all.iter().copied().find(|old| **old == new) {
@@ -111,13 +111,13 @@ impl Record {
         Self { source: kept(&FILES, source), samples: None, whole }
     }
 
-    /// The same with its samples, in SI units.
+    /// Adds the samples, in SI units.
     #[must_use]
     pub fn with(self, samples: Samples) -> Self {
         Self { samples: Some(samples), ..self }
     }
 
-    /// The same, to be written with its samples, so that a study needs no other file.
+    /// Has it written with its samples, so that a study needs no other file.
     #[must_use]
     pub fn whole(self) -> Self {
         Self { whole: true, ..self }
@@ -147,8 +147,8 @@ impl PartialEq for Record {
 
 impl PartialEq for Samples {
     fn eq(&self, other: &Self) -> bool {
-        let how = |of: &Self| (of.factor, of.every);
-        let same = std::ptr::eq(self.table, other.table) && how(self) == how(other);
+        let view = |of: &Self| (of.factor, of.every);
+        let same = std::ptr::eq(self.table, other.table) && view(self) == view(other);
         let equal = |i: usize| self.time(i) == other.time(i) && self.value(i) == other.value(i);
         same || (self.len() == other.len() && (0..self.len()).all(equal))
     }
@@ -205,7 +205,7 @@ impl Samples {
         Self { table, factor: 1.0, every: 1, bounds: [0.0; 2] }.checked()
     }
 
-    /// The same with its bounds.
+    /// Checks values and slopes, and sets their bounds.
     fn checked(mut self) -> Result<Self, BadSamples> {
         let count = self.len();
         if count < 2 {
@@ -225,7 +225,7 @@ impl Samples {
         Ok(self)
     }
 
-    /// The same times a factor.
+    /// The samples times a factor.
     ///
     /// # Errors
     /// [`BadSamples::NotFinite`].
@@ -233,7 +233,7 @@ impl Samples {
         Self { factor: factor * self.factor, ..self }.checked()
     }
 
-    /// Every second of them, from the first on.
+    /// Every second sample, from the first on.
     ///
     /// # Errors
     /// [`BadSamples::Few`].
@@ -246,7 +246,7 @@ impl Samples {
         self.table.values.len().div_ceil(self.every)
     }
 
-    /// There are never none.
+    /// Never true: there are at least two.
     pub fn is_empty(&self) -> bool {
         self.table.values.is_empty()
     }
@@ -330,7 +330,7 @@ pub struct SampledForce {
 }
 
 impl SampledForce {
-    /// The force of some samples, of which each counts so many newtons.
+    /// The force of samples, each times `unit` (N).
     pub(crate) fn new(samples: Samples, unit: f64) -> Self {
         Self { samples, unit }
     }
@@ -345,13 +345,13 @@ impl SampledForce {
         self.samples.last_before(t).filter(|&i| self.samples.time(i) == t)
     }
 
-    /// So many times from a sample on, s, if there are as many.
+    /// `K` times from a sample on, s, if there are as many.
     #[inline]
     pub fn times<const K: usize>(&self, from: usize) -> Option<[f64; K]> {
         (from + K <= self.samples.len()).then(|| std::array::from_fn(|i| self.samples.time(from + i)))
     }
 
-    /// So many forces from a sample on, N, if there are as many.
+    /// `K` forces from a sample on, N, if there are as many.
     pub fn forces<const K: usize>(&self, from: usize) -> Option<[f64; K]> {
         let Samples { table, factor, every, .. } = self.samples;
         let values = table.values.get(from * every..=(from + K - 1) * every)?;

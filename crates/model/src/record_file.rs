@@ -1,4 +1,4 @@
-//! How a record stands in a study: as the file to read, or as samples in SI units.
+//! How a record is written in a study: as the file to read, or as samples in SI units.
 
 use crate::record::{BadSamples, Column, Record, RecordFile, Samples};
 use crate::unit::named;
@@ -46,7 +46,7 @@ pub(crate) struct Whole {
     values: Vec<f64>,
 }
 
-/// Why they are no record.
+/// Why samples are not a valid record.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum Refused {
     #[error("`record`: give one of `step` and `times` beside `values`")]

@@ -34,7 +34,7 @@ pub struct RegularisedContact {
     sign: f64,
     wall: f64,
     omega: f64,
-    returns: f64,    // ω again, or 0 where the force is linear in time
+    returns: f64,    // ω, or 0 where the force is linear in time
     force: [f64; 2], // bounds on the force and its rate, N, N/s
     felt: f64,       // sign, or 0 where the force accelerates both bodies alike
     // Accelerations per unit of each cause.
@@ -44,7 +44,7 @@ pub struct RegularisedContact {
     spring: [f64; 2],                  // k2/m1, k2 (1/m1 + 1/m2)
     lambda: f64,                       // λ
     law: [f64; 2], // the factor of Hertz's force is law[0] + law[1] w: 1 + λ w, or 0 without force
-    restoring: Option<Arc<Restoring>>, // the law in its place
+    restoring: Option<Arc<Restoring>>, // replaces `law`
     overdamped: bool, // whether w follows the forces (`overdamped`)
     stretch: f64,  // sign (wall - D): the spring's stretch at touch-down, towards the wall
     since: f64,    // the time at which the excitation was set
@@ -107,7 +107,7 @@ impl RegularisedContact {
         self.restoring.as_ref()
     }
 
-    /// λ of the law of Hunt and Crossley, s/m; 0 without.
+    /// λ of the law of Hunt and Crossley, s/m; 0 for any other law.
     pub fn lambda(&self) -> f64 {
         self.lambda
     }
@@ -127,12 +127,12 @@ impl RegularisedContact {
         -1.0 / self.lambda
     }
 
-    /// Lets the force of the wall act, or not although the damper is inside it.
+    /// Sets whether the force of the wall acts while the damper is inside it.
     pub fn set_force(&mut self, acts: bool) {
         self.law = if acts { [1.0, self.lambda] } else { [0.0; 2] };
     }
 
-    /// Whether they are those without force.
+    /// Whether these are the equations without force of the wall.
     pub fn has_no_force(&self) -> bool {
         self.law[0] == 0.0
     }
@@ -150,7 +150,7 @@ impl RegularisedContact {
     /// `0.05⁸ / 8! = 1e-15` of the force.
     pub const TURN: f64 = 0.05;
 
-    /// The same after [`Self::carry_excitation`]: below `0.5¹⁶ / 16! = 1e-18`.
+    /// [`Self::TURN`] after [`Self::carry_excitation`]: below `0.5¹⁶ / 16! = 1e-18`.
     const FAR_TURN: f64 = 0.5;
 
     /// Sets the force at time `t` (s, since touch-down); it is exact while `ω |t' - t| <= TURN`.
@@ -162,14 +162,14 @@ impl RegularisedContact {
     }
 
     /// Whether the wall is so soft that the force turns by some 2 rad in half a swing of the damper on it, about the depth to which the
-    /// force's amplitude presses: steps to the first terms of the force are then shorter than a contact needs.
+    /// force's amplitude presses: steps limited to [`Self::TURN`] are then shorter than a contact needs.
     pub fn is_soft(&self) -> bool {
         let stiffness = self.hertz[0] / self.primary[0];
         let swing = (1.5 * self.hertz[1] * (self.force[0] / stiffness).cbrt()).sqrt();
         swing < 1.5 * self.frequency()
     }
 
-    /// Carries it farther by twice as many terms, for contacts that last long enough for the force to turn.
+    /// Extends the range of the excitation by twice as many terms, for contacts that last long enough for the force to turn.
     pub fn carry_excitation(&mut self) {
         self.is_far = true;
         self.expand(WAVE..2 * WAVE);
@@ -183,12 +183,12 @@ impl RegularisedContact {
         }
     }
 
-    /// The angle (rad) by which the force may turn as it is set.
+    /// The angle (rad) by which the force may turn with the terms in use.
     pub fn turn(&self) -> f64 {
         if self.is_far { Self::FAR_TURN } else { Self::TURN }
     }
 
-    /// A component of the force a time after it was set.
+    /// A component of the force `t` seconds after it was set.
     #[inline(always)]
     fn wave(&self, [near, far]: &[[f64; WAVE]; 2], t: f64) -> f64 {
         let sum = polynomial(near, t);
@@ -224,13 +224,13 @@ impl RegularisedContact {
         q * q * q * self.factor(q, w)
     }
 
-    /// The same from the contact's force over its stiffness.
+    /// [`Self::accelerations`] from the contact's force over its stiffness.
     #[inline(always)]
     fn accelerations_by(&self, cube: f64, &[q, w, x1, v1, t]: &RegularisedState) -> [f64; 2] {
         self.balance(cube, [q * q + self.stretch, w, x1, v1], self.wave(&self.cos, t - self.since))
     }
 
-    /// The same from the spring's stretch and the force, P cos ωt; linear in all of them.
+    /// [`Self::accelerations`] from the spring's stretch and the force, P cos ωt; linear in all arguments.
     #[inline(always)]
     fn balance(&self, cube: f64, [stretch, w, x1, v1]: [f64; 4], force: f64) -> [f64; 2] {
         // The force's polynomial comes last and alone: it is the longest chain of dependent operations.
@@ -254,7 +254,7 @@ impl RegularisedContact {
             + self.spring[0] * (q * q + self.stretch).abs()
     }
 
-    /// `S = (2/5) κ q⁵`, m²/s²: half of the square of the speed of an undisturbed collision without loss that comes as far.
+    /// `S = (2/5) κ q⁵`, m²/s²: half of the square of the touch-down speed of an undisturbed collision without loss that reaches `q`.
     #[inline(always)]
     fn half_square(&self, q: f64) -> f64 {
         0.4 * self.hertz[1] * q.powi(5)
@@ -284,7 +284,8 @@ impl RegularisedContact {
     }
 
     /// The largest `q` (√m) to which the forces of this state but Hertz's would press the damper from rest: `(5 a / 2κ)^(1/3)` with their acceleration
-    /// `a` into the wall, 0 if they pull it away. Long after the force was set no more of it counts than its amplitude.
+    /// `a` into the wall, 0 if they pull it away. The force is clamped to its amplitude, which its polynomial may exceed long after it was
+    /// set.
     pub fn pressed_depth(&self, &[q, w, x1, v1, t]: &RegularisedState) -> f64 {
         let force = self.wave(&self.cos, t - self.since).clamp(-self.amplitude, self.amplitude);
         let [pull, _] = self.balance(0.0, [q * q + self.stretch, w, x1, v1], force);
@@ -301,7 +302,8 @@ impl RegularisedContact {
         (0.8 * self.hertz[1] * q.powi(5)).sqrt()
     }
 
-    /// The fastest of the rates at which spring and wall turn the damper at `q`, the structure's spring turns it, and the force turns, rad/s.
+    /// The largest of the angular frequencies of the damper on spring and wall at `q`, of the structure on its spring, and of the force,
+    /// rad/s.
     pub fn turning(&self, q: f64) -> f64 {
         let damper = self.spring[1] + 1.5 * self.hertz[1] * q;
         damper.max(self.primary[2]).sqrt().max(self.frequency())
@@ -312,7 +314,7 @@ impl RegularisedContact {
         self.hertz[1] / self.hertz[0]
     }
 
-    /// The state `[x1, v1, x2, v2]` as a regularised one, with no time elapsed. A damper that is not in contact with this
+    /// The state `[x1, v1, x2, v2]` as a regularised one, at t = 0. A damper that is not in contact with this
     /// wall is taken to be just touching it.
     pub fn regularise(&self, &[x1, v1, x2, v2]: &[f64; 4]) -> RegularisedState {
         let z = self.sign * (x2 - x1 - self.wall);

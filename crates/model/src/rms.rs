@@ -1,6 +1,6 @@
-//! What a stationary random motion has in the place of largest values, each once, with its name, words and unit.
+//! The catalogue of quantities of stationary random motions, each once, with its name, words and unit.
 
-/// What a stationary random motion has in the place of a largest value.
+/// A quantity of a stationary random motion, which replaces a largest value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Rms {
     /// The mean of E1.
@@ -28,7 +28,7 @@ impl Rms {
         Self::Stroke,
     ];
 
-    /// Its entry of the catalogue, as of a measure.
+    /// Its entry of the catalogue, as in [`Measure`](crate::Measure).
     pub(crate) const fn entry(self) -> [&'static str; 4] {
         match self {
             Self::Energy => {

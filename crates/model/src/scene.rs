@@ -56,7 +56,7 @@ pub fn den_hartog(primary: &Primary, mass: f64) -> [f64; 2] {
     [mass * frequency * frequency, 2.0 * mass * frequency * zeta]
 }
 
-/// The exact optimum that Den Hartog's formulas come near to: the spring and dashpot with the least largest displacement, over all
+/// The exact optimum that Den Hartog's formulas approximate: the spring and dashpot that minimise the largest displacement, over all
 /// frequencies, of an undamped structure under a harmonic force. `[k2, c2]`, N/m and N·s/m, of a damper of `mass` (kg). With `μ = m2/m1`,
 /// `r = √(4 + 3μ)` and `ω0 = √(k1/m1)`
 ///

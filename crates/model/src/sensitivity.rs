@@ -12,7 +12,7 @@ impl Bare {
         [growth * cos - turn * sin, growth * sin + turn * cos]
     }
 
-    /// The derivative of the logarithm of the force's amplitude, and that of the angle by which it leads at t = 0.
+    /// The derivatives of the logarithm of the force's amplitude and of the angle by which the force leads at t = 0.
     fn forcing_by(&self, parameter: Parameter) -> [f64; 2] {
         let Source::Harmonic(of, size) = self.source() else { return [0.0; 2] };
         if parameter == of.parameter() && size.get() != 0.0 {
@@ -25,7 +25,7 @@ impl Bare {
         }
     }
 
-    /// The same of the complex stiffness k1 + iωc1 by which a base pushes: k1 y + c1 dy/dt.
+    /// [`Self::forcing_by`] of the complex stiffness k1 + iωc1 by which a base pushes: k1 y + c1 dy/dt.
     fn pushing_by(&self, parameter: Parameter) -> [f64; 2] {
         let (k1, loss) = (self.k1, self.omega * self.c1);
         let square = k1 * k1 + loss * loss;
@@ -46,21 +46,21 @@ impl Coupled {
         if moves { 1.0 } else { 0.0 }
     }
 
-    /// The derivative by a parameter of `ln(K)`, of the Hertz stiffness of both walls: it grows as the root of R.
+    /// The derivative by a parameter of `ln(K)`, the same for both walls' Hertz stiffness, which grows as the root of R.
     pub fn hertz_by(&self, parameter: Parameter) -> f64 {
         if parameter == Parameter::R && self.radius > 0.0 { 0.5 / self.radius } else { 0.0 }
     }
 
-    /// The net force of a contact on the damper, N, and its derivative by a parameter, the state held; of the contact with a wall at the
-    /// indentation `q²` (m), which grows at the rate `w` (m/s).
+    /// The net force on the damper, N, of a contact with a wall at the indentation `q²` (m), which grows at the rate `w` (m/s), and its
+    /// derivative by a parameter at a fixed state.
     pub fn contact_force_by(&self, parameter: Parameter, side: Side, q: f64, w: f64) -> [f64; 2] {
         let Factor { f, by_z, .. } = self.wall_factor(side, q, w);
         let hertz = -side.sign() * self.hertz(side) * q * q * q;
         let force = hertz * f;
         // The factor depends on z by z^(5/2) K (1/m1 + 1/m2).
-        let own = match parameter {
+        let direct = match parameter {
             Parameter::Lambda | Parameter::Restitution => {
-                hertz * self.law(side).by_own(|| self.half_square(side, q), w)
+                hertz * self.law(side).by_parameter(|| self.half_square(side, q), w)
             }
             Parameter::M2 => {
                 let (m2, ..) = self.damper();
@@ -69,18 +69,18 @@ impl Coupled {
             _ => (force + hertz * 0.4 * by_z) * self.hertz_by(parameter),
         };
         let [slope, _] = self.contact_slopes(side, q, w);
-        [force, slope * self.wall_by(parameter, side) + own]
+        [force, slope * self.wall_by(parameter, side) + direct]
     }
 
-    /// The slopes of the force of a wall at the indentation `q²` (m), by it and by its rate `w` (m/s), N/m and N·s/m: those of the law in
-    /// `crate::Coupled` where the root is known.
+    /// The slopes of the force of a wall by the indentation `q²` (m) and by its rate `w` (m/s), N/m and N·s/m: those of the law in
+    /// `crate::Coupled`, for a known root `q`.
     pub fn contact_slopes(&self, side: Side, q: f64, w: f64) -> [f64; 2] {
         let (hertz, Factor { f, by_z, by_w, .. }) = (self.hertz(side), self.wall_factor(side, q, w));
         [hertz * q * (1.5 * f + by_z), hertz * q * q * q * by_w]
     }
 
     /// `∂[x1'', x2'']/∂parameter` by equation (1), m/s² per unit of the parameter, at a state, with the net contact force on the damper
-    /// (N) and its derivative by the parameter; the force on the structure is held.
+    /// (N) and its derivative by the parameter, under a fixed force on the structure.
     pub fn acceleration_by(
         &self,
         parameter: Parameter,
@@ -105,8 +105,8 @@ impl Coupled {
         [alone[0] - on_damper / m1, alone[1] + on_damper / m2]
     }
 
-    /// The derivative by a parameter of what a measure is the largest size of, at time `t` (s) and state `y`, where `by` is the derivative
-    /// of the state: in the unit of the measure per unit of the parameter. Of the contact force, that of the wall that is nearer.
+    /// The derivative by a parameter of the quantity whose largest size a measure is, at time `t` (s) and state `y`, where `by` is the
+    /// derivative of the state: in the unit of the measure per unit of the parameter. For the contact force, that of the nearer wall.
     pub fn measure_by(
         &self,
         measure: Measure,
@@ -130,26 +130,26 @@ impl Coupled {
                 let [driven, _] = self.bare().excitation_by(parameter, t);
                 let [k1, c1] = self.bare().ground_force_weights();
                 let along = (driven - k1 * by[0] - c1 * by[1]) / self.masses().iter().sum::<f64>();
-                let own = self.held_acceleration_by(parameter, excitation, y);
-                self.held_acceleration(excitation, y).signum() * (along + own)
+                let direct = self.held_acceleration_by(parameter, excitation, y);
+                self.held_acceleration(excitation, y).signum() * (along + direct)
             }
             Measure::Acceleration => {
-                let [own, _] = self.acceleration_by(parameter, y, contact);
+                let [direct, _] = self.acceleration_by(parameter, y, contact);
                 let driven = self.bare().excitation_by(parameter, t)[0] / m1;
                 let jacobian = self.jacobian(y);
                 let along: f64 = (0..4).map(|j| jacobian[(1, j)] * by[j]).sum();
-                self.derivative(self.excitation(t), y)[1].signum() * (along + own + driven)
+                self.derivative(self.excitation(t), y)[1].signum() * (along + direct + driven)
             }
             Measure::GroundForce => {
                 let [k1, c1] = self.bare().ground_force_weights();
-                let own = y[0] * is(Parameter::K1) + y[1] * is(Parameter::C1);
+                let direct = y[0] * is(Parameter::K1) + y[1] * is(Parameter::C1);
                 // Less the force that the ground exerts where it moves.
                 let [driven, driven_by] = match self.bare().is_on_moving_base() {
                     true => [self.excitation(t)[0], self.bare().excitation_by(parameter, t)[0]],
                     false => [0.0; 2],
                 };
                 let force = k1 * y[0] + c1 * y[1] - driven;
-                force.signum() * (k1 * by[0] + c1 * by[1] + own - driven_by)
+                force.signum() * (k1 * by[0] + c1 * by[1] + direct - driven_by)
             }
             Measure::Stroke => {
                 let stretch = y[2] - y[0] - self.rest_distance();
@@ -165,7 +165,7 @@ impl Coupled {
                 self.wall_pressure(side, depth) * (0.5 * deeper / depth + self.hertz_by(parameter) - radius)
             }
             Measure::ContactPressure => 0.0,
-            // A moment of a run has none.
+            // Not defined at a moment of a run.
             Measure::DecayTime | Measure::Stationary(_) => f64::NAN,
         }
     }

@@ -1,14 +1,14 @@
-//! How long a motion from rest remembers its start.
+//! How fast transients decay.
 
 use crate::{Bare, Coupled, Scene};
 use nalgebra::Complex;
 
-/// Share of the fastest rate below which a motion stands still: a damper without a spring stays where it is.
+/// Share of the fastest rate below which an eigenvalue counts as zero: a damper without a spring has a neutral position.
 const STILL: f64 = 1e-9;
 
 impl Scene {
-    /// The rate at which the slowest transient decays with the walls open, 1/s; 0 where nothing damps one. After `t` seconds it has
-    /// `exp(-rate t)` of its start.
+    /// The rate at which the slowest transient decays without contact, 1/s; 0 where one is undamped. After `t` seconds the share
+    /// `exp(-rate t)` of its start is left.
     pub fn slowest_decay(&self) -> f64 {
         match &self.damper {
             None => slowest(
@@ -66,7 +66,7 @@ mod tests {
         // Equal masses, springs and dashpots: λ² + z λ + z = 0 with z = (3 ± √5) / 2, the roots of z² - 3 z + 1.
         let z = 0.5 * (3.0 - 5f64.sqrt());
         near(scene([1.0, 1.0, 1.0], Some([1.0, 1.0, 1.0])).slowest_decay(), 0.5 * z);
-        // A damper that no spring holds stays where it is, and is no transient.
+        // A damper without a spring has a neutral position, which is not a transient.
         let free = scene([1000.0, 452.0, 39500.0], Some([1.0, 1.0, 0.0])).slowest_decay();
         assert!(free > 0.2, "{free}");
     }

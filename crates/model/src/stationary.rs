@@ -18,7 +18,7 @@ pub struct Stationary {
     squares: Squares,
     /// k1 and m1.
     weights: [f64; 2],
-    /// By how much the two sums of the integral differ, as a share of a mean square; 0 of white noise.
+    /// Relative difference of the two sums of the integral; 0 for white noise.
     pub error: f64,
 }
 
@@ -45,7 +45,7 @@ impl Stationary {
         Some(Self { squares, weights, error })
     }
 
-    /// A root mean square, or the mean energy, in the SI unit; infinite of an acceleration under white noise on the structure itself.
+    /// A root mean square, or the mean energy, in the SI unit; infinite for the acceleration under white noise on the structure itself.
     pub fn get(&self, rms: Rms) -> f64 {
         let [x1, v1, a1, ground, stroke] = self.squares;
         match rms {
@@ -85,17 +85,17 @@ impl Linear {
         let &Self { m1, c1, k1, damper, on_base } = self;
         let omega2 = omega * omega;
         let ground = Complex::new(k1, omega * c1);
-        // Coordinates that move with the base: every mass feels its mass times minus its acceleration.
+        // In coordinates that move with the base every mass m feels the force -m times the base's acceleration.
         let driven = if on_base { -m1 } else { 1.0 };
         let (x1, stroke) = match damper {
             None => (driven / (ground - m1 * omega2), Complex::new(0.0, 0.0)),
             Some([m2, k2, c2]) => {
                 let spring = Complex::new(k2, omega * c2);
-                let own = spring - m2 * omega2;
+                let dynamic = spring - m2 * omega2;
                 let carried = if on_base { -m2 } else { 0.0 };
                 let primary = ground + spring - m1 * omega2;
-                let determinant = primary * own - spring * spring;
-                let x1 = (own * driven + spring * carried) / determinant;
+                let determinant = primary * dynamic - spring * spring;
+                let x1 = (dynamic * driven + spring * carried) / determinant;
                 let x2 = (primary * carried + spring * driven) / determinant;
                 (x1, x2 - x1)
             }
@@ -105,7 +105,7 @@ impl Linear {
         [x2, omega2 * x2, a1.norm_sqr(), (ground * x1).norm_sqr(), stroke.norm_sqr()]
     }
 
-    /// Under a density in a table, with the measured error.
+    /// Mean squares under a tabulated density, with the measured error.
     fn under(&self, spectrum: &Spectrum, tolerance: f64) -> Option<(Squares, f64)> {
         let of_damper = self.damper.map(|[m2, k2, _]| (k2 / m2).sqrt());
         let resonances = [Some((self.k1 / self.m1).sqrt()), of_damper];
@@ -120,7 +120,7 @@ impl Linear {
         integral::integral(part, &nodes, tolerance)
     }
 
-    /// Under white noise of one-sided density `density`, whose covariance is `π S δ(τ)`.
+    /// Mean squares under white noise of one-sided density `density`, whose covariance is `π S δ(τ)`.
     fn under_white(&self, density: f64) -> Option<Squares> {
         let &Self { m1, c1, k1, damper, on_base } = self;
         let intensity = PI * density;
@@ -134,7 +134,7 @@ impl Linear {
             let a1 = ground / (m1 * m1) + if density > 0.0 { at_once } else { 0.0 };
             return [x1, v1].iter().all(|one| one.is_finite()).then_some([x1, v1, a1, ground, 0.0]);
         };
-        // The state is x1 and x2 - x1 - D, both times a frequency, and their rates: one unit for all.
+        // The state is x1 and x2 - x1 - D, both times a frequency, and their rates, so that all have one unit.
         let unit = ((k1 + k2) / m1).sqrt();
         let acceleration = [-k1 / (m1 * unit), -c1 / m1, k2 / (m1 * unit), c2 / m1];
         let relative = [0.0, 0.0, -k2 / (m2 * unit), -c2 / m2];

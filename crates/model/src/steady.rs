@@ -8,7 +8,7 @@ use nalgebra::Complex;
 pub struct Steady {
     /// Complex amplitude of the primary structure, m.
     pub x1: Complex<f64>,
-    /// Complex amplitude of the damper about `D`, m; that of the structure without a damper, so that the stroke is zero.
+    /// Complex amplitude of the damper about `D`, m; equal to `x1` without a damper, so that the stroke is zero.
     pub x2: Complex<f64>,
     /// Largest energy of the primary structure over a period, `|X1|² max(k1, m1 ω²) / 2`, J.
     pub e1_max: f64,
@@ -18,7 +18,7 @@ pub struct Steady {
 
 impl Steady {
     /// The amplitude of a quantity at the angular frequency of the response, of the structure `bare`: largest values over a period.
-    /// Zero for contact forces, for the response is that of a damper that touches nothing.
+    /// Zero for contact forces, since the damper touches nothing.
     pub fn largest(&self, bare: &Bare, omega: f64, measure: Measure) -> f64 {
         let x1 = self.x1.norm();
         match measure {
@@ -43,7 +43,7 @@ impl Steady {
     }
 }
 
-/// Largest `(m v² + k x²)/2` of the motion `x = |X| cos(ωt + φ)`: both terms are turns of one another, so the larger wins.
+/// Largest `(m v² + k x²)/2` of the motion `x = |X| cos(ωt + φ)`: each term is largest where the other is zero, so the larger one decides.
 fn largest_energy(amplitude: Complex<f64>, k: f64, m_omega2: f64) -> f64 {
     0.5 * amplitude.norm_sqr() * k.max(m_omega2)
 }
@@ -113,7 +113,7 @@ impl Coupled {
         let by_x1 = (bare.force(omega) * by_dynamic - steady.x1 * by_divisor) / divisor;
         let by_x2 = (bare.force(omega) * by_spring - steady.x2 * by_divisor) / divisor;
         // Each measure is a constant times the size, or for the energy its square, of one complex number.
-        let [own, by] = match measure {
+        let [value, by] = match measure {
             Measure::Stroke => [steady.x2 - steady.x1, by_x2 - by_x1],
             Measure::GroundForce if bare.is_on_moving_base() => {
                 let ground = Complex::new(k1, omega * c1);
@@ -123,6 +123,6 @@ impl Coupled {
         };
         let largest = steady.largest(bare, omega, measure);
         let power = if measure == Measure::Energy { 2.0 } else { 1.0 };
-        if largest == 0.0 { 0.0 } else { power * largest * (by / own).re }
+        if largest == 0.0 { 0.0 } else { power * largest * (by / value).re }
     }
 }

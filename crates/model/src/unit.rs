@@ -51,13 +51,13 @@ pub const TIME: &[Unit] = &[("s", 1.0), ("ms", 1e-3), ("min", 60.0)];
 pub const FREQUENCY: &[Unit] = &[("rad/s", 1.0), ("Hz", TAU), ("rpm", TAU / 60.0)];
 /// Units of a share: 1 is the whole.
 pub const SHARE: &[Unit] = &[("", 1.0), ("%", 1e-2)];
-/// Of a number without a unit.
+/// The unit of a dimensionless number.
 pub(crate) const NONE: &[Unit] = &[("", 1.0)];
 
 /// A number as it was typed, in SI units: without a unit, or with one of `units`.
 ///
 /// # Errors
-/// It is none; the message says what to give.
+/// `text` is no such number; the message says what to give.
 pub fn read(text: &str, units: &[Unit]) -> Result<f64, String> {
     let text = text.trim();
     let with = |&(name, size): &Unit| Some(size * number(text.strip_suffix(name)?)?);
@@ -78,7 +78,7 @@ pub fn named(name: &str, units: &[Unit]) -> Option<Unit> {
 
 /// A value in the SI unit `si`, in the unit in which a person reads it best: `0.0022` and `m` are `2.2` and `mm`.
 pub fn readable(value: f64, si: &'static str) -> Unit {
-    // From the smallest.
+    // Smallest first.
     let units: &[Unit] = match si {
         "m" => &[("µm", 1e-6), ("mm", 1e-3), ("m", 1.0)],
         "m/s" => &[("mm/s", 1e-3), ("m/s", 1.0)],
@@ -91,7 +91,7 @@ pub fn readable(value: f64, si: &'static str) -> Unit {
         "N·s/m" => &[("N·s/m", 1.0), ("kN·s/m", 1e3)],
         _ => return (si, value),
     };
-    // What is rounded to 1000 of a unit is 1 of the next.
+    // A value that would round to 1000 of a unit is given as 1 of the next.
     let fits = |&&(_, size): &&Unit| value.abs() >= 0.99995 * size;
     let plain = units.iter().find(|unit| unit.1 == if si == "m" { 1e-3 } else { 1.0 });
     let unit = if value == 0.0 { plain } else { units.iter().rev().find(fits).or(units.first()) };

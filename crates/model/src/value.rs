@@ -76,7 +76,7 @@ range_type!(
 );
 
 impl Restitution {
-    /// That of a contact that loses nothing.
+    /// The restitution of a contact without loss.
     pub const ONE: Self = Self(1.0);
 }
 

@@ -40,7 +40,7 @@ struct RigidWalls {
     rigid: Rigid,
 }
 
-/// What a file may say of the walls; `Written` is what it may say together.
+/// All fields that a file may have for the walls; `Written` has their valid combinations.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[rustfmt::skip]
@@ -62,7 +62,7 @@ struct InFile {
     rigid: Option<Rigid>,
 }
 
-/// Why what a file says is no law of the walls.
+/// Why the fields of a file do not describe a law of the walls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 enum Refused {
     #[error("missing field `{0}`: give all of R, q, E1, nu1 to E4, nu4 (Hertz's surfaces), or `rigid` alone")]
@@ -122,7 +122,7 @@ impl From<Contact> for Written {
 }
 
 impl Contact {
-    /// Hertz's surfaces, where that is the law.
+    /// Hertz's surfaces, if that is the law.
     pub fn surfaces(&self) -> Option<&Surfaces> {
         match self {
             Self::Hertz(surfaces) => Some(surfaces),
@@ -130,7 +130,7 @@ impl Contact {
         }
     }
 
-    /// The restitution of rigid walls, where they are.
+    /// Rigid walls, if that is the law.
     pub fn rigid(&self) -> Option<Rigid> {
         match self {
             Self::Hertz(_) => None,
@@ -221,8 +221,8 @@ impl Surfaces {
         })
     }
 
-    /// The same where the structure is not like the paper's: `omega` is its √(k1/m1), rad/s, and `reach` its largest displacement without a
-    /// damper, m. `K z^1.5` is as large a share of `m ω² z` as there, at depths `z` that are as large a share of `reach`.
+    /// [`Self::for_mass`] for a structure unlike the paper's: `omega` is its √(k1/m1), rad/s, and `reach` its largest displacement without
+    /// a damper, m. The ratio of `K z^1.5` to `m ω² z` is the paper's at equal `z / reach`.
     ///
     /// # Errors
     /// A modulus is beyond the numbers.
@@ -252,9 +252,9 @@ impl Surfaces {
         [self.loss, self.loss_obstacle.unwrap_or(self.loss)]
     }
 
-    /// The times that a longitudinal wave takes through a damper of `mass` (kg) and back, s, by the contacts with the primary structure and
-    /// with the obstacle: `2 L / c` with the size `L = (m2/ρ)^(1/3)` and the speed `c = √(E/ρ)` of a wave in a rod, E that of the softer of
-    /// the two surfaces that meet. None where no density is given.
+    /// The times that a longitudinal wave takes through a damper of `mass` (kg) and back, s, for the contacts with the primary structure
+    /// and with the obstacle: `2 L / c` with the size `L = (m2/ρ)^(1/3)` and the speed `c = √(E/ρ)` of a wave in a rod, with the E of the
+    /// softer of the two surfaces that meet. None if no density is given.
     pub fn waves(&self, mass: f64) -> Option<[f64; 2]> {
         let density = self.density?.get();
         let softer =
@@ -268,7 +268,7 @@ mod tests {
     use super::*;
     use crate::{Bare, Forcing, Measure, NonNegative, Primary};
 
-    /// A cube of 8 kg of 1000 kg/m³ is 0.2 m wide; where E = 10 MPa is softer, its waves go at 100 m/s.
+    /// A cube of 8 kg with 1000 kg/m³ is 0.2 m wide; with 10 MPa the softer modulus, waves travel at 100 m/s.
     #[test]
     fn exact_a_wave_passes_a_cube_and_comes_back() {
         let number = |value| Positive::new(value).expect("above 0");

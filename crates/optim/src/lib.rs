@@ -1,8 +1,8 @@
 //! Searches for the parameters that minimise an objective.
 //!
-//! The methods receive a closure and do not depend on what it computes: no model, no files, no clocks. The only part
-//! of this crate that knows the model is the objective, [`DesignObjective`]: E1max, or another quantity, as a function of a design, at one frequency or
-//! the worst over a band. Progress is reported to the caller's observers; nothing is printed.
+//! The methods receive a closure and do not depend on what it computes: no model, no files, no clocks. Only the objective,
+//! [`DesignObjective`], knows the model: E1max, or another quantity, as a function of a design, at one frequency or the worst over a band.
+//! Progress is reported to the caller's observers; nothing is printed.
 //!
 //! - [`Grid`] and [`surf()`]: the objective on every point of a grid, in parallel, with the same bytes at any
 //!   number of threads; [`best_separated`] picks starts for a refinement from it.

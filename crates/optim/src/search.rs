@@ -1,4 +1,4 @@
-//! Searches for the minimum of a function of several parameters; they are independent of what it computes.
+//! Searches for the minimum of any function of several parameters.
 
 pub(crate) mod fminsearch;
 pub(crate) mod global;

@@ -1,4 +1,4 @@
-//! Where motions cross a section: a wall, the end of a contact, or a crest of the force.
+//! Crossings of a section: a wall, the end of a contact, or a crest of the force.
 
 use crate::equations::Flow;
 use crate::number::{Family, Matrix, matrix, times};
@@ -16,9 +16,9 @@ pub struct Crossing {
     pub centre: Family,
     /// The derivatives of the state on the section by the first state.
     pub by: Matrix<Taylor>,
-    /// All motions, from where they were to where they cross.
+    /// All motions, up to where they cross.
     pub near: Family,
-    /// The independent variable until they cross.
+    /// The change of the independent variable until they cross.
     pub delay: Interval,
 }
 
@@ -32,13 +32,13 @@ pub struct Section {
 }
 
 impl Section {
-    /// Whether a change of the coordinate leads to the section.
+    /// Whether a change of the coordinate leads towards the section.
     pub fn is_towards(&self, change: Interval) -> bool {
         if self.event.is_rising() { change.is_positive() } else { change.is_negative() }
     }
 }
 
-/// The crossing by all states, which are near the section. None if a motion may come to it too slowly.
+/// The crossing by all states, which are near the section. None if a motion may reach it too slowly.
 pub fn cross(flow: Flow<'_>, states: &States, section: &Section) -> Option<Crossing> {
     let (start, fixed) = (states.centre(), section.event.fixed());
     let (delay, _, slopes) = reach(flow, &start, section)?;
@@ -56,10 +56,11 @@ pub fn cross(flow: Flow<'_>, states: &States, section: &Section) -> Option<Cross
     Some(Crossing { centre, by, near, delay })
 }
 
-/// The independent variable until all states of a box cross a section, where they are until then, and how they change there.
+/// The change of the independent variable until all states of a box cross a section, an enclosure of the states until then, and their
+/// slopes.
 ///
-/// By the mean value theorem a coordinate `g` that is `g(0)` off its value is there after `-g(0)/g'` for some `g'` on the way (interval
-/// Newton); if that is in the stretch for which the way was enclosed, each motion crosses in it, and once, as `g'` has one sign.
+/// By the mean value theorem a coordinate `g` that is `g(0)` off its value reaches it after `-g(0)/g'` for some `g'` on the way (interval
+/// Newton). If that is within the range over which the way was enclosed, each motion crosses in it, and only once, as `g'` has one sign.
 fn reach(flow: Flow<'_>, start: &Family, section: &Section) -> Option<(Taylor, Family, Family)> {
     let off = start[section.event.fixed()] - Taylor::from(section.value);
     let newton = |slopes: &Family| {
@@ -70,7 +71,7 @@ fn reach(flow: Flow<'_>, start: &Family, section: &Section) -> Option<(Taylor, F
     for _ in 0..ATTEMPTS {
         let tried = delay.wider(0.1 * delay.width() + f64::MIN_POSITIVE);
         let way = tried.hull(Interval::ZERO);
-        // All of the family, then each of its motions.
+        // First an enclosure over the whole family, then for each of its motions.
         let rough = flow.derivative(&enclosure(flow, &start.map(Taylor::hull), way)?);
         let near: Family = array::from_fn(|i| start[i] + Taylor::from(way * rough[i]));
         let slopes = flow.derivative(&near);
@@ -91,7 +92,7 @@ mod tests {
     use crate::step::{ORDER, step};
     use retune_model::Side;
 
-    /// A wall is come to from its own side: with the other sign of the speed, or with either in one box, nothing is proven.
+    /// A wall is reached from inside the cavity: with the opposite sign of the speed, or both signs in one box, nothing is proven.
     #[test]
     fn contract_a_crossing_has_a_slope_of_the_right_sign() {
         let equations = crate::step::tests::scene();
@@ -108,14 +109,14 @@ mod tests {
                 let states = States::first(&start, box_of, identity());
                 let found = cross(flow, &states, &section);
                 assert_eq!(found.is_some(), is_crossed, "{side:?} {speed} {away}");
-                // In time to come: 1 nm at 0.5 m/s.
+                // Still to come: 1 nm at 0.5 m/s.
                 assert!(found.is_none_or(|found| (found.delay.mid() - 2e-9).abs() < 1e-11), "{side:?}");
             }
         }
     }
 
-    /// The damper slows down at 20 m/s²: it needs 7 % longer for the last millimetre than it would at its first speed. After 2.6 ms, by a step, it is still before
-    /// the wall, so what is known up to the crossing holds its state there.
+    /// The damper slows down at 20 m/s²: it needs 7 % longer for the last millimetre than at its initial speed. After 2.6 ms, by a step, it
+    /// is still before the wall, so the enclosure up to the crossing contains its state.
     #[test]
     fn invariant_all_of_the_way_to_a_crossing_is_enclosed() {
         let equations = crate::step::tests::scene();

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
 /// Terms of the Taylor series of sine and cosine.
 const TERMS: u32 = 12;
-/// Wider than this, nothing is known.
+/// Arguments wider than this give [-1, 1].
 const WIDE: f64 = 4.0;
 
 /// π/2: the double is below it (it is 1.570796326794896558, π/2 is 1.570796326794896619).
@@ -39,7 +39,8 @@ pub fn cos_sin(x: Interval) -> [Interval; 2] {
     turned.map(|value| (value + away).meet(all).unwrap_or(all))
 }
 
-/// `[cos x, sin x]` by Taylor's series. Its terms alternate and, for `|x| < 1`, fall; so what is left out is at most the first of it.
+/// `[cos x, sin x]` by Taylor's series. Its terms alternate and, for `|x| < 1`, decrease, so the truncation error is at most the first
+/// omitted term.
 fn near_zero(x: Interval, terms: u32) -> [Interval; 2] {
     if x.magnitude() >= 1.0 {
         return [Interval::new(-1.0, 1.0); 2];
@@ -51,7 +52,7 @@ fn near_zero(x: Interval, terms: u32) -> [Interval; 2] {
             let n = f64::from(2 * k + offset);
             all.push(all[k as usize] * minus_square / Interval::point((n + 1.0) * (n + 2.0)));
         }
-        // From the smallest on: the last sum alone rounds at the size of the result.
+        // Smallest first: only the last sum rounds at the size of the result.
         let left_out = all.pop().map_or(1.0, Interval::magnitude);
         all.into_iter().rev().fold(Interval::around_zero(left_out), |sum, term| sum + term)
     };
@@ -67,7 +68,7 @@ mod tests {
         serde_json::from_str(include_str!("../../../tests/reference/cos_sin.json")).expect("a table")
     }
 
-    /// Whether a number that is the sum of a double and what is left of it is in an interval.
+    /// Whether a number, given as a sum of two doubles, is in an interval.
     fn holds(interval: Interval, [first, rest]: [f64; 2]) -> bool {
         let is_below = interval.lo() < first || (interval.lo() == first && rest >= 0.0);
         let is_above = interval.hi() > first || (interval.hi() == first && rest <= 0.0);
@@ -85,7 +86,7 @@ mod tests {
         }
     }
 
-    /// Of a few terms, where what is left out is far above rounding.
+    /// With few terms, so that the truncation error is far above rounding.
     #[test]
     fn reference_mpmaths_cosine_and_sine_are_enclosed_by_short_series() {
         for [x, c, c_rest, s, s_rest] in reference().into_iter().filter(|[x, ..]| x.abs() < 1.0) {
@@ -106,7 +107,7 @@ mod tests {
         assert_eq!(cos_sin(Interval::ENTIRE)[0], Interval::new(-1.0, 1.0));
     }
 
-    /// 2 π/2 is in it: 3.14159265358979311600 is the double below π, 1.2246467991473532e-16 what is left.
+    /// It contains 2 π/2: 3.14159265358979311600 is the double below π, 1.2246467991473532e-16 the remainder.
     #[test]
     fn exact_pi() {
         assert!(holds(pi(), [std::f64::consts::PI, 1.224_646_799_147_353_2e-16]) && pi().width() < 2e-15);

@@ -2,8 +2,8 @@
 //!
 //! A state of a flight is `[r, w, x1, v1, φ, 0]` with `r = x2 - x1`, `w = dr/dt`, and the phase `φ` of the force. A state of a contact with a
 //! wall is `[q, w, x1, v1, φ, v]` with the indentation `z = q²` and `w = dz/dt`; its independent variable is `θ`, `dt = q dθ` (equation (5) of
-//! `docs/theory.md`), in which Hertz's force `K q³` is polynomial. With the same restitution at every speed `v` is the touch-down speed of the undisturbed
-//! collision through the state; other contacts leave it alone.
+//! `docs/theory.md`), in which Hertz's force `K q³` is polynomial. With the same restitution at every speed `v` is the touch-down speed of
+//! the undisturbed collision through the state; other contacts do not use it.
 
 use crate::elementary::pi;
 use crate::loss::Factor;
@@ -14,28 +14,28 @@ use retune_model::{Amplitude, Contact, Damper, Forcing, Primary, Scene, Side, So
 /// The numbers of a scene.
 #[derive(Clone, Debug)]
 pub struct Equations {
-    /// ω, of a family a function of its parameter.
+    /// ω; for a family a function of its parameter.
     pub omega: Taylor,
     /// m1, c1, k1.
     pub primary: [Interval; 3],
-    /// m2, c2, k2; no mass if there is no damper.
+    /// m2, c2, k2; m2 is zero without a damper.
     pub damper: [Interval; 3],
     /// D.
     pub rest: Interval,
-    /// Where the walls are; anywhere if there are none.
+    /// Positions of the walls; the whole line without walls.
     pub walls: [Interval; 2],
     /// K1, K3.
     pub hertz: [Interval; 2],
-    /// What the contacts lose.
+    /// The factors of the contacts' losses.
     pub factors: [Factor; 2],
-    /// Powers of two that make the coordinates alike: roots of energies, which damping lets fall.
+    /// Powers of two that scale the coordinates alike, to roots of energies, which decrease by damping.
     pub scales: [f64; STATE],
     /// The force, as weights of `[cos φ, ω² cos φ, ω sin φ]`, all over `ω²` if the acceleration of a base is given.
     force: [Interval; 3],
     is_over_square: bool,
 }
 
-/// What the damper does.
+/// The mode of the damper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
     /// It touches nothing.
@@ -44,36 +44,36 @@ pub enum Mode {
     Contact(Side),
 }
 
-/// The equations while the damper does one thing.
+/// The equations in one mode of the damper.
 #[derive(Clone, Copy, Debug)]
 pub struct Flow<'a> {
     /// The numbers.
     pub equations: &'a Equations,
-    /// What it does.
+    /// The mode.
     pub mode: Mode,
 }
 
 impl Equations {
-    /// The equations of a scene, each number of which is the decimal that a file has, not the double nearest to it.
+    /// The equations of a scene. Each number encloses the decimal in the file, not just the double nearest to it.
     ///
-    /// All fields are named here, so that what the model learns is read or refused.
+    /// All fields are named here, so that a new field of the model must be read or refused.
     ///
     /// # Errors
     /// No damping at all without damper, no periodic force, rigid walls, or too small a restitution.
     pub fn new(scene: &Scene) -> Result<Self, Failure> {
         let number = Interval::decimal;
-        let Scene { primary: Primary { mass, damping, stiffness }, forcing, damper: own } = scene;
+        let Scene { primary: Primary { mass, damping, stiffness }, forcing, damper: scene_damper } = scene;
         let primary @ [m1, c1, k1] = [mass.get(), damping.get(), stiffness.get()].map(number);
-        let (damper, [rest, clearance], contact) = match own {
+        let (damper, [rest, clearance], contact) = match scene_damper {
             Some(Damper { mass, stiffness, damping, rest_distance, clearance, contact }) => (
                 [mass.get(), damping.get(), stiffness.get()].map(number),
                 [rest_distance.get(), clearance.get()].map(number),
                 *contact,
             ),
-            // A structure alone moves as one with a damper of no mass, whose spring then is never stretched.
+            // A structure alone moves like one with a massless damper, whose spring is never stretched.
             None => ([Interval::ZERO, Interval::ZERO, Interval::ONE], [Interval::ZERO; 2], None),
         };
-        // Where a run starts is nothing to a motion that repeats.
+        // A periodic motion does not depend on the start of a run.
         let Forcing { source, frequency, start: _ } = forcing;
         let omega = number(frequency.get());
         // k1 y + c1 dy/dt with y = Y cos φ.
@@ -105,23 +105,23 @@ impl Equations {
         let scales = scales(m1 / damper[0], omega.square() + k1 * (Interval::ONE / m1));
         let omega = Taylor::from(omega);
         let all = Self { omega, primary, damper, rest, walls, hertz, factors, scales, force, is_over_square };
-        if own.is_none() && !all.comes_to_rest() {
+        if scene_damper.is_none() && !all.comes_to_rest() {
             return Err(Failure::Scene("a structure without damper, and without spring or dashpot"));
         }
         Ok(all)
     }
 
-    /// The same at the frequencies of a function, exactly.
+    /// The equations with ω replaced by a function, exactly.
     pub fn at(&self, omega: Taylor) -> Self {
         Self { omega, ..self.clone() }
     }
 
     /// Whether the system without walls and force is proven to come to rest, that is, to be asymptotically stable.
     ///
-    /// Its energy is positive definite if both springs are, and falls by `c1 v1² + c2 w²` in time. A motion that keeps it for ever, as one dashpot takes nothing, is
-    /// rest: with `c1 > 0` the structure stands, so the damper's spring pushes it with a constant force, so the damper stands, and no spring is stretched; with
-    /// `c2 > 0` and a mass both masses move as one, under the constant force of the damper's spring, which is zero as the motion is bounded, and so is the other's
-    /// (E. A. Barbashin and N. N. Krasovskii, 1952).
+    /// Its energy is positive definite if both stiffnesses are positive, and decreases at the rate `c1 v1² + c2 w²`. A motion of constant
+    /// energy is rest: with `c1 > 0` the structure stands still, so the damper's spring pushes it with a constant force, so the damper
+    /// stands still, and no spring is stretched; with `c2 > 0` and a mass both masses move as one, under the constant force of the damper's
+    /// spring, which is zero as the motion is bounded, and so is the other's (E. A. Barbashin and N. N. Krasovskii, 1952).
     pub fn comes_to_rest(&self) -> bool {
         let [[_, c1, k1], [m2, c2, k2]] = [self.primary, self.damper];
         let is_damped = c1.is_positive() || (c2.is_positive() && m2.is_positive());
@@ -148,29 +148,31 @@ impl Equations {
 }
 
 impl<'a> Flow<'a> {
-    /// That after an event.
+    /// The flow after an event.
     pub fn after(equations: &'a Equations, event: Event) -> Self {
         let mode = if let Event::Touch(side) = event { Mode::Contact(side) } else { Mode::Flight };
         Self { equations, mode }
     }
 
-    /// Towards which side the first coordinate is counted: minus one in a contact with the structure.
+    /// The direction in which the first coordinate increases: minus one in a contact with the structure.
     pub fn sign(self) -> Interval {
         Interval::point(if let Mode::Contact(side) = self.mode { side.sign() } else { 1.0 })
     }
 
     /// The Taylor coefficients of the solution from a state, up to `order`: `[k][i]` is that of the power `k` of the coordinate `i`.
     pub fn series<T: Number>(self, start: &[T; STATE], order: usize) -> Vec<[T; STATE]> {
-        let (own, sign, zero) = (self.equations, self.sign(), T::constant(Interval::ZERO));
+        let (equations, sign, zero) = (self.equations, self.sign(), T::constant(Interval::ZERO));
         let (stretch, mut contact) = match self.mode {
-            Mode::Flight => (-own.rest, None),
-            Mode::Contact(side) => (sign * (own.walls[side as usize] - own.rest), Some(Push::new(own, side))),
+            Mode::Flight => (-equations.rest, None),
+            Mode::Contact(side) => {
+                (sign * (equations.walls[side as usize] - equations.rest), Some(Push::new(equations, side)))
+            }
         };
-        let [[m1, c1, k1], [m2, c2, k2]] = [own.primary, own.damper];
+        let [[m1, c1, k1], [m2, c2, k2]] = [equations.primary, equations.damper];
         let [per_m1, per_m2] = [m1, m2].map(|mass| Interval::ONE / mass);
-        let (omega, force) = (T::of(own.omega), own.force_per_mass::<T>());
+        let (omega, force) = (T::of(equations.omega), equations.force_per_mass::<T>());
         let (mut y, mut circle) = (vec![*start], vec![start[4].cos_sin()]);
-        // Of a contact: the two accelerations, which are multiplied by dt/dθ = q, and that of the speed v.
+        // In a contact: the two accelerations, which are multiplied by dt/dθ = q, and that of the speed v.
         let mut accelerations: Vec<[T; 3]> = Vec::new();
         for k in 0..order {
             let [u, w, x1, v1, ..] = y[k];
@@ -192,7 +194,7 @@ impl<'a> Flow<'a> {
                 + push.times(sign * per_m1);
             let rate = -push.times(per_m2) + -a1.times(sign);
             let slopes = if let Some(contact) = &mut contact {
-                let others = rate + contact.force[k].times(own.inverse_masses());
+                let others = rate + contact.force[k].times(equations.inverse_masses());
                 accelerations.push([rate, a1, contact.speeding(others)]);
                 let by_clock = |other: &dyn Fn(usize) -> T| product(k, |i| y[i][0], other);
                 let [rate, a1, speeding] = [0, 1, 2].map(|j| by_clock(&|i| accelerations[i][j]));
@@ -228,18 +230,18 @@ pub struct Push<'a, T> {
     pub force: Vec<T>,
     /// `q²`, `q³`, `1/v`, `h = w/v`, and the factor `f`.
     factors: [Vec<T>; 5],
-    /// `q⁵`, `1/v²`, `q⁵/v²`, `D`, `1/D`, `h/D`, and the acceleration by others.
+    /// `q⁵`, `1/v²`, `q⁵/v²`, `D`, `1/D`, `h/D`, and the acceleration by all other forces.
     denominator: [Vec<T>; 7],
 }
 
 impl<'a, T: Number> Push<'a, T> {
-    /// Before its first term.
+    /// The series without any terms yet.
     pub fn new(equations: &'a Equations, side: Side) -> Self {
         let (factors, denominator) = Default::default();
         Self { equations, side, force: Vec::new(), factors, denominator }
     }
 
-    /// Adds the next term of all, where the motion has it.
+    /// Adds the next term of all series, from that of the motion `y`.
     pub fn extend(&mut self, y: &[[T; STATE]]) {
         let (k, one) = (self.force.len(), if self.force.is_empty() { Interval::ONE } else { Interval::ZERO });
         let [squares, cubes, inverse_speed, stage, factors] = &mut self.factors;
@@ -259,16 +261,16 @@ impl<'a, T: Number> Push<'a, T> {
         self.force.push(push.times(self.equations.hertz[self.side as usize]));
     }
 
-    /// The next term of `dv/dt = a h/D`, with the acceleration `a` into the wall that others than the contact cause, and `D = 2 f G + h²`, `G = S/v²`,
-    /// `S = (2/5) κ q⁵`, `κ = K (1/m1 + 1/m2)` (`docs/theory.md`, "One restitution at every speed"); zero of other contacts.
+    /// The next term of `dv/dt = a h/D`, with the acceleration `a` into the wall by all forces but the contact's, and `D = 2 f G + h²`,
+    /// `G = S/v²`, `S = (2/5) κ q⁵`, `κ = K (1/m1 + 1/m2)` (`docs/theory.md`, "One restitution at every speed"); zero for other contacts.
     fn speeding(&mut self, acceleration: T) -> T {
-        let own = self.equations;
-        if !matches!(own.factors[self.side as usize], Factor::Restoring(_)) {
+        let equations = self.equations;
+        if !matches!(equations.factors[self.side as usize], Factor::Restoring(_)) {
             return T::constant(Interval::ZERO);
         }
         let storing = Interval::point(4.0) / Interval::point(5.0)
-            * own.hertz[self.side as usize]
-            * own.inverse_masses();
+            * equations.hertz[self.side as usize]
+            * equations.inverse_masses();
         let k = self.denominator[0].len();
         let of = |a: &[T], b: &[T]| product(k, |i| a[i], |i| b[i]);
         let [squares, cubes, inverse_speed, stage, factors] = &self.factors;
@@ -293,7 +295,7 @@ fn quotient<T: Number>(inverse: &mut Vec<T>, of: impl Fn(usize) -> T) {
     inverse.push(next);
 }
 
-/// The powers of two next to `[√(m2/m1), √(m2/m1)/σ, 1, 1/σ, 1/σ, √(m2/m1)/σ]`, by `m1/m2` and `σ²`.
+/// The powers of two next to `[√(m2/m1), √(m2/m1)/σ, 1, 1/σ, 1/σ, √(m2/m1)/σ]`, from `m1/m2` and `σ²`.
 fn scales(ratio: Interval, square: Interval) -> [f64; STATE] {
     let power = |square: f64| (0.5 * square.log2()).round().exp2();
     let (mass, speed) = (power(1.0 / ratio.mid()), power(1.0 / square.mid()));
@@ -307,7 +309,7 @@ pub fn product<T: Number>(k: usize, a: impl Fn(usize) -> T, b: impl Fn(usize) ->
 
 /// `[K1, K3]` of the contacts, `K = (4/3) q / ((δa + δb) √(1/R))` with `δ = (1 - ν²)/(πE)` (section 2 of the paper).
 fn hertz_stiffness(surfaces: &Surfaces) -> [Interval; 2] {
-    // What contacts lose is asked of `losses`; on strength and density no motion depends.
+    // Losses are read by `losses`; no motion depends on strength and density.
     #[rustfmt::skip]
     let Surfaces {
         radius, coefficient, young_1, poisson_1, young_2, poisson_2, young_3, poisson_3, young_4, poisson_4,
@@ -325,7 +327,7 @@ fn hertz_stiffness(surfaces: &Surfaces) -> [Interval; 2] {
     pairs.map(|softness| four * number(coefficient.get()) / (three * softness * curvature.sqrt()))
 }
 
-/// A series at an independent variable, the last coefficient first (Horner).
+/// Evaluates a series by Horner's scheme.
 pub fn at<T: Number>(series: impl DoubleEndedIterator<Item = T>, h: T) -> T {
     series.rev().fold(T::constant(Interval::ZERO), |sum, c| sum * h + c)
 }

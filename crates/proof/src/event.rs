@@ -1,11 +1,11 @@
-//! What happens to a motion: impacts, ends of contacts, crests of the force; and why something was not proven.
+//! Events of a motion: impacts, ends of contacts, crests of the force; and the reasons why a proof fails.
 
 use crate::number::FREE;
 use retune_model::Side;
 use serde::Serialize;
 use std::fmt;
 
-/// What happens to a motion.
+/// An event of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     /// The force is at a crest, the damper in flight.
@@ -14,12 +14,12 @@ pub enum Event {
     Touch(Side),
     /// The damper leaves a wall.
     Leave(Side),
-    /// The force of a contact that loses energy ends before the contact does: no motion that is proven comes to it.
+    /// The force of a contact that loses energy ends before the contact does. No proven motion reaches it.
     Pull,
 }
 
 impl Event {
-    /// The coordinate that has a fixed value there: the distance of the damper, the phase, or the speed.
+    /// The index of the coordinate that is fixed there: the distance of the damper, the phase, or the speed.
     pub fn fixed(self) -> usize {
         match self {
             Self::Crest => 4,
@@ -28,22 +28,22 @@ impl Event {
         }
     }
 
-    /// The coordinates that have not, of an event that ends a segment.
+    /// The indices of the free coordinates, of an event that ends a segment.
     pub fn free(self) -> [usize; FREE] {
         if self == Self::Crest { [0, 1, 2, 3] } else { [1, 2, 3, 4] }
     }
 
-    /// Whether motions come to it from below.
+    /// Whether motions reach it from below.
     pub fn is_rising(self) -> bool {
         matches!(self, Self::Crest | Self::Touch(Side::Obstacle))
     }
 
-    /// Whether both are at one wall.
+    /// Whether they are the touch and the leave of one wall.
     pub fn is_beside(self, other: Self) -> bool {
         matches!((self, other), (Self::Touch(a), Self::Leave(b)) | (Self::Leave(a), Self::Touch(b)) if a == b)
     }
 
-    /// What a motion does there, in words.
+    /// Its name: what a motion does there, in words.
     pub fn name(self) -> &'static str {
         match self {
             Self::Crest => "reaches a crest of the force in flight",
@@ -56,7 +56,7 @@ impl Event {
     }
 }
 
-/// A multiplier in doubles, at the middles of derivatives, of which nothing is proven; without the sign of its imaginary part.
+/// A multiplier computed in doubles at the middles of the derivatives, not proven; without the sign of its imaginary part.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Multiplier {
     /// Real part.
@@ -75,7 +75,7 @@ impl fmt::Display for Multiplier {
     }
 }
 
-/// Why something was not proven, in which step, and at which width there (in m, m/s or rad): it may be true all the same.
+/// Why a proof failed, in which step, and at which width there (in m, m/s or rad): the statement may still be true.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Failure {
     /// The proof does not cover such scenes.
@@ -86,25 +86,25 @@ pub enum Failure {
     /// No closed form: without force the system may not come to rest.
     #[error("in closed form: no dashpot is proven to bring the system to rest")]
     Undamped,
-    /// A motion comes to a wall, to the end of a contact, or to that of its force so slowly that it may as well not come there, from a box of this width.
+    /// A motion reaches a wall, the end of a contact, or that of its force so slowly that it may also miss it, from a box of this width.
     #[error("at an event: a graze: it is open whether the motion {name}; its box is {1:.1e} wide", name = .0.name())]
     Graze(Event, f64),
-    /// No box was found that the motions stay in during a step of this length, from a box of this width.
+    /// No enclosure was found for a step of this length, from a box of this width.
     #[error("in a step of {0:.1e} s (in a contact s/√m): no enclosure is found; its box is {1:.1e} wide")]
     Step(f64, f64),
-    /// A segment does not end within so many steps; its box then has this width.
+    /// A segment does not end within this number of steps; its box then has this width.
     #[error("in a segment: no impact, lift-off or crest within {0} steps; its box is {1:.1e} wide")]
     Endless(usize, f64),
-    /// The guess does not repeat after so many periods of the force: so far it is off.
+    /// The guess does not repeat after this number of periods of the force; the second number is its gap.
     #[error("the guess is refused; after {0} period{s} of the force it is {1:.1e} (m, m/s or rad) off", s = if *_0 == 1 { "" } else { "s" })]
     Guess(usize, f64),
-    /// The sequence of events of a motion becomes another one by a change of it of this size.
+    /// The sequence of events changed with a Newton change of this size.
     #[error("by Newton's iteration: the sequence of impacts becomes another one by a change of {0:.1e}")]
     Sequence(f64),
-    /// Krawczyk's operator maps no box into itself: the width of the last box, and of what became of it.
+    /// Krawczyk's operator maps no box into itself: the widths of the last box and of its image.
     #[error("by Krawczyk's operator: no box is mapped into itself; one {0:.1e} wide becomes {1:.1e} wide")]
     Krawczyk(f64, f64),
-    /// A motion that is to be stable was not proven to be.
+    /// A motion required to be stable was not proven to be.
     #[error("the motion is not proven to be stable: {0}")]
     NotStable(Multiplier),
 }

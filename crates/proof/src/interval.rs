@@ -1,8 +1,8 @@
 //! Intervals of real numbers with outward rounding.
 //!
 //! IEEE 754 rounds each sum, product, quotient and square root to the nearest double, so the exact result lies between the neighbours of the
-//! rounded one, `next_down` and `next_up`; in the subnormal range and at overflow too. A result that is no number encloses nothing, and
-//! becomes the whole line.
+//! rounded one, `next_down` and `next_up`; in the subnormal range and at overflow too. A NaN result encloses nothing, and becomes the
+//! whole line.
 
 use serde::Serialize;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -15,12 +15,12 @@ pub struct Interval {
     hi: f64,
 }
 
-/// A lower bound of the exact result that was rounded to `x`.
+/// A lower bound on the exact result that was rounded to `x`.
 fn below(x: f64) -> f64 {
     if x.is_nan() { f64::NEG_INFINITY } else { x.next_down() }
 }
 
-/// An upper bound of it.
+/// An upper bound on the exact result.
 fn above(x: f64) -> f64 {
     if x.is_nan() { f64::INFINITY } else { x.next_up() }
 }
@@ -30,7 +30,7 @@ impl Interval {
     pub const ZERO: Self = Self::point(0.0);
     /// The number one.
     pub const ONE: Self = Self::point(1.0);
-    /// All real numbers: what is known after a division by zero.
+    /// All real numbers, for instance after a division by zero.
     pub const ENTIRE: Self = Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
 
     /// One double, exactly.
@@ -38,7 +38,7 @@ impl Interval {
         Self { lo: x, hi: x }
     }
 
-    /// The numbers between two doubles, in either order; the whole line if one is no number.
+    /// The numbers between two doubles, in either order; the whole line if one is NaN.
     pub fn new(a: f64, b: f64) -> Self {
         if a.is_nan() || b.is_nan() { Self::ENTIRE } else { Self { lo: a.min(b), hi: a.max(b) } }
     }
@@ -48,7 +48,7 @@ impl Interval {
         Self::new(-r, r)
     }
 
-    /// The decimal number that was read as `x`: within half a unit in the last place of it, and `x` itself if it is whole.
+    /// An enclosure of the decimal number that was read as `x`: between the neighbours of `x`, and `x` itself if it is whole.
     pub fn decimal(x: f64) -> Self {
         let whole = x.fract() == 0.0 && x.abs() < 9_007_199_254_740_992.0; // 2^53
         if whole { Self::point(x) } else { Self::new(x.next_down(), x.next_up()) }
@@ -69,7 +69,7 @@ impl Interval {
         0.5 * self.lo + 0.5 * self.hi
     }
 
-    /// An upper bound of the width.
+    /// An upper bound on the width.
     pub fn width(self) -> f64 {
         above(self.hi - self.lo)
     }
@@ -89,12 +89,12 @@ impl Interval {
         self.lo <= x && x <= self.hi
     }
 
-    /// Whether all numbers are in another interval, or its bounds.
+    /// Whether it is a subset of another interval.
     pub fn is_in(self, other: Self) -> bool {
         other.lo <= self.lo && self.hi <= other.hi
     }
 
-    /// Whether all numbers are in the interior of another interval.
+    /// Whether it is in the interior of another interval.
     pub fn is_inside(self, other: Self) -> bool {
         other.lo < self.lo && self.hi < other.hi
     }
@@ -114,7 +114,7 @@ impl Interval {
         Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
     }
 
-    /// The numbers in both; none if they share none.
+    /// The intersection; none if it is empty.
     pub fn meet(self, other: Self) -> Option<Self> {
         let (lo, hi) = (self.lo.max(other.lo), self.hi.min(other.hi));
         (lo <= hi).then_some(Self { lo, hi })
@@ -131,7 +131,7 @@ impl Interval {
         Self { lo: below(lo * lo).max(0.0), hi: above(hi * hi) }
     }
 
-    /// The square roots of the numbers that are not negative; the whole line if there are others.
+    /// The square roots of the numbers; the whole line if some are negative.
     pub fn sqrt(self) -> Self {
         if self == Self::ZERO {
             self
@@ -147,7 +147,7 @@ impl Interval {
         self.max(-self).max(Self::ZERO)
     }
 
-    /// The larger of a number of each.
+    /// The maxima of a number of each.
     pub fn max(self, other: Self) -> Self {
         Self { lo: self.lo.max(other.lo), hi: self.hi.max(other.hi) }
     }
@@ -157,7 +157,7 @@ impl Add for Interval {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
-        // Exact, and not wider: sums begin with zero.
+        // Adding zero is exact: sums begin with it.
         match (self, other) {
             (Self::ZERO, x) | (x, Self::ZERO) => x,
             _ => Self { lo: below(self.lo + other.lo), hi: above(self.hi + other.hi) },
@@ -211,7 +211,7 @@ impl Div for Interval {
 
 /// The interval between the extremes of four rounded results.
 fn hull_of([a, b]: [f64; 2], [c, d]: [f64; 2]) -> Interval {
-    // `min` and `max` pass over what is no number.
+    // `min` and `max` ignore NaN.
     if (a + b + c + d).is_nan() {
         return Interval::ENTIRE;
     }
@@ -229,7 +229,7 @@ mod tests {
     use super::*;
     use std::fmt;
 
-    /// Only tests show intervals.
+    /// Only tests format intervals.
     impl fmt::Display for Interval {
         fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
             write!(f, "[{}, {}]", self.lo, self.hi)
@@ -263,7 +263,7 @@ mod tests {
         }
     }
 
-    /// The signs of the exact differences of product, quotient and root from the bounds are those of one fused multiplication and addition, which rounds
+    /// The signs of the exact differences of product, quotient and root from the bounds are those of one fused multiply-add, which rounds
     /// once; that of the sum follows from its rounding error (T. J. Dekker and D. E. Knuth).
     #[test]
     fn exact_results_are_in_the_intervals_of_a_million_draws() {
@@ -290,7 +290,7 @@ mod tests {
         }
     }
 
-    /// 0.001 to 0.999 and more, most of which no double is: a fused multiplication tells on which side of `n/1000` a bound is.
+    /// 0.001 to 0.999 and more, most of them not doubles: a fused multiply-add decides on which side of `n/1000` a bound is.
     #[test]
     fn exact_a_decimal_is_in_the_interval_of_the_double_that_is_read() {
         for n in 1..10_000 {

@@ -22,7 +22,7 @@ pub struct Largest {
 }
 
 impl Largest {
-    /// Each with its quantity.
+    /// Each value with its measure.
     pub fn all(&self) -> [(Measure, Interval); 3] {
         [
             (Measure::Energy, self.energy),
@@ -42,7 +42,7 @@ pub fn largest(equations: &Equations, passages: &[Passage]) -> Largest {
     }
 }
 
-/// The largest value of a quantity that is not below zero.
+/// The largest value of a non-negative quantity.
 fn over(passages: &[Passage], value: &(&Equations, Of)) -> Interval {
     let mut most = Interval::ZERO;
     for Passage { pieces, near, delay, .. } in passages {
@@ -59,11 +59,11 @@ fn over(passages: &[Passage], value: &(&Equations, Of)) -> Interval {
     most
 }
 
-/// What is largest.
+/// The quantity that is maximised.
 #[derive(Clone, Copy, Debug)]
 enum Of {
     Energy,
-    /// Times a sign.
+    /// The stretch of the spring, times a sign.
     Stretch(f64),
     Force,
 }

@@ -1,9 +1,10 @@
-//! Proofs by interval arithmetic that a damper has a periodic motion: that it exists and is alone in a small box, its sequence of impacts, whether it is
-//! stable, and its largest values. Nothing of the solver is used: a motion that it found is the guess. `docs/proof.md` has the theorem.
+//! Proofs by interval arithmetic of a damper's periodic motion: that it exists and is unique in a small box, its sequence of impacts,
+//! whether it is stable, and its largest values. Nothing of the solver is used: a motion found by it serves as the guess. `docs/proof.md`
+//! has the theorem.
 //!
-//! Read `interval`, `elementary`, `taylor` and `number` (what is computed in), `equations` (equation (1) and its Taylor series), `step` (a validated step),
-//! `range` (what a quantity does during one), `crossing` and `segment` (from one event to the next), `orbit` (the ring of events), then `theorem`, with
-//! `stability` and `largest`.
+//! Read `interval`, `elementary`, `taylor` and `number` (the arithmetic), `equations` (equation (1) and its Taylor series), `step` (a
+//! validated step), `range` (bounds on a quantity during a step), `crossing` and `segment` (from one event to the next), `orbit` (the cycle
+//! of events), then `theorem`, with `stability` and `largest`.
 //!
 //! ```
 //! use retune_proof::{Stability, prove};

@@ -1,4 +1,4 @@
-//! What a contact loses, in intervals: the factor of Hertz's force (`docs/theory.md`, "Contacts that lose energy").
+//! The loss of a contact, in intervals: the factor of Hertz's force (`docs/theory.md`, "Contacts that lose energy").
 
 use crate::{Failure, Interval};
 use retune_model::Loss;
@@ -20,7 +20,7 @@ const LEAST: f64 = 0.2;
 const TERMS: u32 = 40;
 
 impl Factor {
-    /// Of a loss, each number of which is the decimal that a file has.
+    /// The factor of a loss, whose number encloses the decimal in the file.
     ///
     /// # Errors
     /// The restitution is too small.
@@ -36,7 +36,7 @@ impl Factor {
     }
 }
 
-/// About the touch-down speed `v` of the undisturbed collision through a state, with `S = v² G(w/v)`: a guess, by bisection in doubles.
+/// An approximation, by bisection in doubles, of the touch-down speed `v` of the undisturbed collision through a state: `S = v² G(w/v)`.
 pub fn touch_down(chi: f64, stored: f64, w: f64) -> f64 {
     let excess = |v: f64| {
         let h = w / v;
@@ -48,14 +48,14 @@ pub fn touch_down(chi: f64, stored: f64, w: f64) -> f64 {
     }
     for _ in 0..80 {
         let middle = 0.5 * (low + high);
-        // What is no number is beyond lift-off.
+        // NaN is beyond lift-off.
         if excess(middle) > 0.0 { high = middle } else { low = middle }
     }
     high
 }
 
-/// χ by e: `L(a) = (1 - e)/(1 + e)` with `a = χ (1 + e)/2` and Langevin's function `L(a) = coth a - 1/a`, which grows. So it is between two numbers
-/// at which `L` is below and above.
+/// χ from e: `L(a) = (1 - e)/(1 + e)` with `a = χ (1 + e)/2` and Langevin's function `L(a) = coth a - 1/a`, which increases. So `a` is
+/// between two numbers at which `L` is below and above.
 fn chi(e: Interval) -> Option<Interval> {
     let wanted = (Interval::ONE - e) / (Interval::ONE + e);
     let (mut low, mut high) = (0.0, 4.0);
@@ -71,8 +71,8 @@ fn chi(e: Interval) -> Option<Interval> {
     Some(Interval::point(2.0) * a / (Interval::ONE + e))
 }
 
-/// `coth a - 1/a` for `a` from 0 to 4.5, as `a Σ 2k a²ᵏ⁻²/(2k+1)! / Σ a²ᵏ/(2k+1)!`: all terms are positive, and those left out are less than the last
-/// one, as each is less than half of that before it.
+/// `coth a - 1/a` for `a` from 0 to 4.5, as `a Σ 2k a²ᵏ⁻²/(2k+1)! / Σ a²ᵏ/(2k+1)!`: all terms are positive, and the omitted ones sum to
+/// less than the last one, as each is less than half of the one before.
 fn langevin(a: f64) -> Interval {
     let a = Interval::point(a);
     let (mut term, mut above, mut below) = (Interval::ONE, Interval::ZERO, Interval::ZERO);
@@ -109,7 +109,7 @@ mod tests {
         }
     }
 
-    /// Langevin's function grows: at the ends of `a = χ (1 + e)/2` it is below and above what it is to be.
+    /// Langevin's function increases: at the ends of `a = χ (1 + e)/2` it is below and above the required value.
     #[test]
     fn exact_langevins_function_is_below_and_above_at_the_ends_of_chi() {
         for e in [0.2, 0.25, 0.3, 0.5, 0.6, 0.7, 0.75, 0.8, 0.9, 0.99] {

@@ -1,5 +1,6 @@
-//! What the equations of motion are evaluated in: intervals or functions of a parameter, alone or with their derivatives by the coordinates of a state; matrices of
-//! these, with a frame of nearly orthogonal directions and its inverse, and an approximate inverse of the derivatives by all unknowns.
+//! The numbers in which the equations of motion are evaluated: intervals or functions of a parameter, alone or with their derivatives by
+//! the coordinates of a state; matrices of these, with a frame of nearly orthogonal directions and its inverse, and an approximate inverse
+//! of the derivatives by all unknowns.
 
 use crate::{Interval, Number, Taylor};
 use nalgebra::{DMatrix, SMatrix};
@@ -8,7 +9,7 @@ use std::ops::{Add, Mul, Neg};
 
 /// Coordinates of a state: four of the motion, the phase of the force, and the speed of a contact that loses energy.
 pub const STATE: usize = 6;
-/// The place of that speed.
+/// The index of that speed.
 pub const SPEED: usize = 5;
 /// Coordinates that are free on a section.
 pub const FREE: usize = 4;
@@ -35,11 +36,11 @@ pub struct Gradient<T> {
 impl<T: Number> Gradient<T> {
     /// The coordinates of a state as quantities: the derivative of each by itself is one.
     pub fn coordinates(state: &[T; STATE]) -> [Self; STATE] {
-        let entry = |is_own: bool| T::constant(if is_own { Interval::ONE } else { Interval::ZERO });
+        let entry = |is_diagonal: bool| T::constant(if is_diagonal { Interval::ONE } else { Interval::ZERO });
         array::from_fn(|i| Self { value: state[i], by: array::from_fn(|j| entry(i == j)) })
     }
 
-    /// What does not depend on the state.
+    /// A value that does not depend on the state.
     fn of_value(value: T) -> Self {
         Self { value, by: [T::constant(Interval::ZERO); STATE] }
     }
@@ -100,7 +101,7 @@ impl<T: Number> Number for Gradient<T> {
 /// A matrix in intervals, `[row][column]`, or in functions of a family's parameter.
 pub type Matrix<T = Interval, const N: usize = STATE> = [[T; N]; N];
 
-/// One of the free coordinates, for each value of a family's parameter.
+/// A matrix over the free coordinates, for each value of a family's parameter.
 pub type Block = Matrix<Taylor, FREE>;
 
 /// The identity.
@@ -120,17 +121,17 @@ pub fn times<T: Number, const N: usize>(a: &Matrix<T, N>, b: &Matrix<T, N>) -> M
     matrix(entry)
 }
 
-/// A matrix by its entries.
+/// The matrix with these entries.
 pub fn matrix<T, const N: usize>(entry: impl Fn(usize, usize) -> T) -> Matrix<T, N> {
     array::from_fn(|i| array::from_fn(|j| entry(i, j)))
 }
 
-/// Sums of the coordinates.
+/// The sum of two vectors.
 pub fn plus<T: Number>(a: &[T; STATE], b: &[T; STATE]) -> [T; STATE] {
     array::from_fn(|i| a[i] + b[i])
 }
 
-/// Coordinates of a box in directions that turn with the flow, so that boxes do not grow by being wrapped in boxes (R. Lohner, 1987).
+/// Coordinates of a box in directions that turn with the flow, against the wrapping effect (R. Lohner, 1987).
 ///
 /// The directions are the columns of `S⁻¹ Q` with a nearly orthogonal `Q` and a diagonal `S` of powers of two, exact as factors.
 #[derive(Clone, Copy, Debug)]
@@ -180,13 +181,14 @@ impl Frame {
     }
 }
 
-/// Newton's iterations for an inverse: each doubles the order.
+/// Newton iterations for an inverse: each doubles the order.
 const ITERATIONS: usize = 3;
 
 /// A matrix of any size, of functions of a family's parameter: its rows.
 pub type Rows = Vec<Vec<Taylor>>;
 
-/// Polynomials near the inverse of a matrix, by that at the middle and Newton's iteration `A + A (1 - M A)` (G. Schulz, 1933); none of a singular one.
+/// Polynomials near the inverse of a matrix, from the inverse at the middle by Newton's iteration `A + A (1 - M A)` (G. Schulz, 1933); none
+/// for a singular one.
 pub fn inverse(matrix: &Rows) -> Option<Rows> {
     let n = matrix.len();
     let first = DMatrix::from_fn(n, n, |i, j| matrix[i][j].mid()).try_inverse()?;
@@ -234,7 +236,7 @@ fn product(a: &Rows, b: &Rows) -> Rows {
 mod tests {
     use super::*;
 
-    /// The weights of a sum of directions are in its coordinates along them, though these are at angles of some degrees off.
+    /// The coordinates of a sum of directions contain its weights, although the directions are some degrees off orthogonal.
     #[test]
     fn exact_coordinates_along_directions_that_are_not_orthogonal() {
         let off = |i: usize, j: usize| 0.004 * ((i + 2 * j) % 5) as f64;

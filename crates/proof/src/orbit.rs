@@ -1,4 +1,4 @@
-//! A motion that is guessed to repeat, as a ring of events, and its improvement by Newton's iteration.
+//! A guess of a periodic motion, as a cycle of events, and its improvement by Newton's iteration.
 
 use crate::crossing::Section;
 use crate::elementary::pi;
@@ -10,38 +10,39 @@ use std::f64::consts::TAU;
 
 /// Most events of a motion.
 const EVENTS: usize = 400;
-/// Most of Newton's iterations.
+/// Most Newton iterations.
 const ITERATIONS: usize = 12;
-/// Those for the polynomials of a family, of 8 terms.
+/// Newton iterations for the polynomials of a family, of 8 terms.
 const WIDENED: usize = 3;
-/// Of a guess, the largest gap that is taken for its rounding, relative to the states.
+/// Largest Newton change of a guess that counts as rounding.
 const CLOSED: f64 = 1e-13;
 
-/// A motion that is as near as this to its first phase, rad, has come back.
+/// A motion nearer than this to its first phase, rad, has returned.
 const BACK: f64 = 1e-2;
 
-/// A state `[x1, v1, x2, v2]` at a crest of the force, and after how many periods it may repeat.
+/// A state `[x1, v1, x2, v2]` at a crest of the force, and the number of periods after which it may repeat.
 pub type Guess = ([f64; 4], usize);
 
-/// A motion that may repeat after so many periods of the force.
+/// A motion that may repeat after `periods` periods of the force.
 #[derive(Clone, Debug)]
 pub struct Orbit {
     /// Periods of the force.
     pub periods: usize,
-    /// Its events in turn; after the last one the first follows.
+    /// Its events in order; the first follows the last.
     pub nodes: Vec<Node>,
-    /// The way from each to the next.
+    /// The plan from each event to the next.
     pub plans: Vec<Plan>,
-    /// Whole turns of the force that are taken off the phase at the end of each: phases stay small, and so do their roundings.
+    /// Whole turns of the force that are subtracted from the phase at the end of each segment: phases stay small, and so do their
+    /// roundings.
     turns: Vec<usize>,
 }
 
-/// The equations of a repeating motion at a box: unknowns are the free coordinates of all nodes.
+/// The equations of a periodic motion over a box: the unknowns are the free coordinates of all nodes.
 #[derive(Clone, Debug)]
 pub struct Residual {
-    /// What is known of each segment.
+    /// The enclosures of the segments.
     pub passages: Vec<Passage>,
-    /// By how much the motions from the centres miss the next nodes.
+    /// The gaps between the ends of the motions from the centres and the next nodes.
     pub gaps: Vec<Taylor>,
 }
 
@@ -50,9 +51,9 @@ pub struct Residual {
 pub struct Closed {
     /// The motion.
     pub orbit: Orbit,
-    /// What its equations leave at the nodes themselves.
+    /// The residual of its equations at the nodes themselves.
     pub known: Residual,
-    /// The inverse of their derivatives there.
+    /// An approximate inverse of their derivatives there.
     pub inverse: Rows,
 }
 
@@ -62,11 +63,11 @@ fn turn(turns: usize) -> Interval {
 }
 
 impl Orbit {
-    /// The ring of events of the motion from a state at a crest of the force. It begins at the crest if the damper is in flight there and either `at_crest` is asked for
-    /// or no wall is struck; otherwise at the next event.
+    /// The cycle of events of the motion from a state at a crest of the force. It begins at the crest if the damper is in flight there and
+    /// either `at_crest` is set or no wall is struck; otherwise at the next event.
     ///
     /// # Errors
-    /// The motion grazes, or does not come back.
+    /// The motion grazes, or does not return.
     pub fn guess(equations: &Equations, (start, periods): Guess, at_crest: bool) -> Result<Self, Failure> {
         let [x1, v1, x2, v2] = start;
         let (r, w) = (x2 - x1, v2 - v1);
@@ -111,13 +112,13 @@ impl Orbit {
         self.nodes.iter().flat_map(|node| node.event.free().map(|i| node.state[i]))
     }
 
-    /// The phase of the crest where it ends, as it is counted in a segment, if it begins at one.
+    /// The phase of the crest where the motion ends, as counted in segment `k`, if it begins at one.
     fn crest(&self, k: usize) -> Option<Interval> {
         let taken: usize = self.turns.iter().take(k).sum();
         (self.nodes[0].event == Event::Crest).then(|| turn(self.periods - taken))
     }
 
-    /// Its equations at all states whose unknowns are `away` from those of its nodes.
+    /// Its equations at all unknowns that are `away` from those of its nodes.
     ///
     /// # Errors
     /// A segment cannot be proven.
@@ -135,21 +136,22 @@ impl Orbit {
         Ok(Residual { passages, gaps })
     }
 
-    /// The derivatives of the equations by the unknowns: rows of blocks, that of each segment and minus one at the next node.
+    /// The derivatives of the equations by the unknowns: in each row of blocks that of the segment, and minus the identity at the next
+    /// node.
     pub fn jacobian(&self, passages: &[Passage]) -> Rows {
         let n = FREE * self.nodes.len();
         let mut all = vec![vec![Taylor::ZERO; n]; n];
         for (k, passage) in passages.iter().enumerate() {
             for (i, row) in passage.by.iter().enumerate() {
-                let (whole, own) = (&mut all[FREE * k + i], FREE * ((k + 1) % self.nodes.len()) + i);
+                let (whole, next) = (&mut all[FREE * k + i], FREE * ((k + 1) % self.nodes.len()) + i);
                 whole[FREE * k..][..FREE].copy_from_slice(row);
-                whole[own] = whole[own] - Taylor::point(1.0);
+                whole[next] = whole[next] - Taylor::point(1.0);
             }
         }
         all
     }
 
-    /// With what the equations leave at the nodes themselves, and the inverse of their derivatives there.
+    /// Adds the residual of the equations at the nodes themselves, and the inverse of their derivatives there.
     fn closed(self, equations: &Equations) -> Result<Closed, Failure> {
         let known = self.residual(equations, &vec![Interval::ZERO; FREE * self.nodes.len()])?;
         let inverse = inverse(&self.jacobian(&known.passages));
@@ -158,7 +160,7 @@ impl Orbit {
     }
 
     /// With other unknowns.
-    fn with(&self, unknowns: impl IntoIterator<Item = Taylor>) -> Self {
+    fn with_unknowns(&self, unknowns: impl IntoIterator<Item = Taylor>) -> Self {
         let (mut next, mut unknowns) = (self.clone(), unknowns.into_iter());
         for node in &mut next.nodes {
             for (i, x) in node.event.free().into_iter().zip(&mut unknowns) {
@@ -168,16 +170,16 @@ impl Orbit {
         next
     }
 
-    /// With the unknowns less a change.
-    fn less(&self, change: &[Taylor]) -> Self {
-        self.with(self.unknowns().zip(change).map(|(x, change)| x - *change))
+    /// With a change subtracted from the unknowns.
+    fn minus(&self, change: &[Taylor]) -> Self {
+        self.with_unknowns(self.unknowns().zip(change).map(|(x, change)| x - *change))
     }
 
-    /// With the ways planned anew, after a change of the unknowns by so much.
+    /// Plans the segments anew, after the unknowns have changed by `change`.
     ///
     /// # Errors
-    /// See [`plan`]; or its sequence of events becomes another one.
-    fn planned(self, equations: &Equations, change: f64) -> Result<Self, Failure> {
+    /// See [`plan`]; or the sequence of events changes.
+    fn replanned(self, equations: &Equations, change: f64) -> Result<Self, Failure> {
         let plans = self.nodes.iter().enumerate().map(|(k, node)| plan(equations, node, self.crest(k)));
         let plans = plans.collect::<Result<Vec<_>, _>>()?;
         let same = plans.iter().zip(&self.plans).all(|(new, old)| new.end.event == old.end.event);
@@ -187,10 +189,10 @@ impl Orbit {
     /// The motion of a family at a value of its parameter, to rounding.
     ///
     /// # Errors
-    /// Its events are others there.
+    /// Its sequence of events is another one there.
     pub fn member(&self, equations: &Equations, s: f64) -> Result<Self, Failure> {
         let change = self.unknowns().map(|x| x.near(s) - x.mid()).fold(0.0, |most, x| x.abs().max(most));
-        self.with(self.unknowns().map(|x| Taylor::point(x.near(s)))).planned(equations, change)
+        self.with_unknowns(self.unknowns().map(|x| Taylor::point(x.near(s)))).replanned(equations, change)
     }
 
     /// The family of motions through this one for the frequencies of the equations, by Newton's iteration on polynomials, each of which
@@ -204,33 +206,34 @@ impl Orbit {
             orbit.plans = orbit.nodes.iter().zip(&orbit.plans).map(aim).collect();
             orbit.closed(equations)
         };
-        (0..WIDENED)
-            .try_fold(closed(self)?, |own, _| closed(own.orbit.less(&applied(&own.inverse, &own.known.gaps))))
+        (0..WIDENED).try_fold(closed(self)?, |current, _| {
+            closed(current.orbit.minus(&applied(&current.inverse, &current.known.gaps)))
+        })
     }
 
-    /// The same, improved by Newton's iteration on the middles of all intervals.
+    /// Improves the motion by Newton's iteration on the middles of all intervals.
     ///
     /// # Errors
-    /// The iteration does not end on a motion that repeats.
+    /// The iteration does not converge to a periodic motion.
     pub fn improved(self, equations: &Equations) -> Result<Closed, Failure> {
-        let (mut own, mut last) = (self.closed(equations)?, f64::INFINITY);
+        let (mut current, mut last) = (self.closed(equations)?, f64::INFINITY);
         for _ in 0..ITERATIONS {
-            let change = applied(&own.inverse, &own.known.gaps);
+            let change = applied(&current.inverse, &current.known.gaps);
             let size = largest(&change);
             if size <= CLOSED || (size < 1e-9 && size >= 0.5 * last) {
-                return Ok(own);
+                return Ok(current);
             }
             if size.is_nan() || size >= 2.0 * last {
                 break;
             }
             last = size;
-            own = own.orbit.less(&change).planned(equations, size)?.closed(equations)?;
+            current = current.orbit.minus(&change).replanned(equations, size)?.closed(equations)?;
         }
-        Err(Failure::Guess(own.orbit.periods, largest(&own.known.gaps)))
+        Err(Failure::Guess(current.orbit.periods, largest(&current.known.gaps)))
     }
 }
 
-/// The largest of the values at the middles; no number if one is none.
+/// The largest absolute value at the middles; NaN if one is NaN.
 fn largest(all: &[Taylor]) -> f64 {
     all.iter().map(|x| x.mid().abs()).fold(0.0, |most, x| if x.is_nan() { x } else { x.max(most) })
 }

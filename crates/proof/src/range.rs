@@ -1,17 +1,18 @@
-//! What values a quantity has during a step, from its Taylor series with the last coefficient anywhere in the step.
+//! The range of a quantity during a step, from its Taylor series with the last coefficient enclosed over the whole step.
 
 use crate::equations::at;
 use crate::{Interval, Taylor};
 
-/// Halvings of a step before nothing more is tried.
+/// Maximum depth of bisection of a step.
 const DEPTH: u32 = 24;
-/// A bound is sharp enough if it exceeds a value by no more than this share, or by this one of what a family changes it.
+/// A bound is sharp enough if it exceeds a value by no more than the first share of itself, plus the second share of the width over a
+/// family.
 const SHARP: [f64; 2] = [1e-12, 1e-3];
 
 /// A quantity over a step from 0 to 1.
 ///
-/// For each motion it is `Σ cₖ tᵏ` with the coefficients in their intervals, the last one depending on `t`; its derivative is
-/// `Σ k cₖ tᵏ⁻¹` in the same sense, since the remainder of the derivative has `N c_N` somewhere in the step.
+/// For each motion it is `Σ cₖ tᵏ` with the coefficients in their intervals, the last one depending on `t`. Its derivative is
+/// `Σ k cₖ tᵏ⁻¹` in the same sense, since the remainder of the derivative has `N c_N` at some time in the step.
 #[derive(Clone, Debug)]
 pub struct Range {
     series: Vec<Taylor>,
@@ -20,7 +21,7 @@ pub struct Range {
 }
 
 impl Range {
-    /// From its series.
+    /// The range of a quantity with this series.
     pub fn new(series: Vec<Taylor>) -> Self {
         let hulls: Vec<Interval> = series.iter().map(|c| c.hull()).collect();
         let slope = hulls.iter().enumerate().skip(1).map(|(k, c)| Interval::point(k as f64) * *c).collect();
@@ -41,12 +42,12 @@ impl Range {
         self.at(Taylor::point(t)).hull()
     }
 
-    /// Its derivatives during a stretch.
+    /// Its derivatives over an interval of time.
     fn slope(&self, t: Interval) -> Interval {
         at(self.slope.iter().copied(), t)
     }
 
-    /// Its values during a stretch by the mean value theorem, which is sharper on a short one.
+    /// Its values over an interval of time, directly and by the mean value theorem, which is sharper on a short one.
     fn over(&self, [a, b]: [f64; 2]) -> Interval {
         let (t, middle) = (Interval::new(a, b), 0.5 * (a + b));
         let from_middle = self.value(middle) + self.slope(t) * (t - Interval::point(middle));
@@ -54,8 +55,8 @@ impl Range {
         from_middle.meet(direct).unwrap_or(direct)
     }
 
-    /// Whether it is above zero during the step, but for the beginning if it is zero there (`starts`), and up to an only crossing near the end, if it ends
-    /// there (`ends`).
+    /// Whether it is proven positive during the step, except at the beginning if it `starts` at zero, and up to a single crossing near the
+    /// end if the segment `ends` there.
     pub fn is_positive(&self, starts: bool, ends: bool) -> bool {
         self.is_positive_in([0.0, 1.0], [starts, ends], DEPTH)
     }
@@ -74,7 +75,7 @@ impl Range {
             && self.is_positive_in([middle, b], [starts, ends], depth - 1)
     }
 
-    /// Raises `most`, which encloses the largest value so far, to enclose that of this step too. Motions are known to be in the step up to `sure`.
+    /// Updates `most`, which encloses the largest value so far, to include this step. Motions are known to be in the step up to `sure`.
     pub fn raise(&self, most: &mut Interval, sure: f64) {
         self.raise_in([0.0, 1.0], most, sure, DEPTH);
     }
@@ -109,7 +110,7 @@ impl Range {
 mod tests {
     use super::*;
 
-    /// Of a step of the length `h`.
+    /// The range over a step of length `h`.
     fn range(series: &[f64], h: f64) -> Range {
         Range::new(series.iter().enumerate().map(|(k, c)| Taylor::point(c * h.powi(k as i32))).collect())
     }
@@ -124,7 +125,7 @@ mod tests {
         }
     }
 
-    /// Where motions may not be, no value is known to be reached.
+    /// Beyond the time to which motions are sure to last no value is known to be reached.
     #[test]
     fn exact_what_is_not_surely_reached_is_no_lower_bound() {
         let mut most = Interval::ZERO;
@@ -141,7 +142,7 @@ mod tests {
         assert!(rises.is_positive(true, false) && !rises.is_positive(false, false));
         let falls = range(&[1.0, -1.0], 1.0);
         assert!(falls.is_positive(false, true) && !falls.is_positive(false, false));
-        // It begins by falling.
+        // It decreases at first.
         assert!(!range(&[0.0, -1.0, 3.0], 1.0).is_positive(true, false));
     }
 }

@@ -10,38 +10,38 @@ use crate::{Equations, Event, Failure, Interval, Number, Taylor};
 use retune_model::Side;
 use std::array;
 
-/// An event and the state there, `[r, w, x1, v1, φ, 0]`, of a family a polynomial in its parameter.
+/// An event and the state there, `[r, w, x1, v1, φ, 0]`; for a family a polynomial in its parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct Node {
-    /// What happens.
+    /// The event.
     pub event: Event,
     /// The state; the fixed coordinate has its value to rounding.
     pub state: Family,
 }
 
-/// How to get from an event to the next one: the steps to near it, and which it is.
+/// The plan from an event to the next one: the lengths of the steps, and the event that ends them.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Lengths of the steps, without rest.
+    /// Lengths of the steps, as polynomials without rest.
     pub steps: Vec<Taylor>,
-    /// The event, and where it is.
+    /// The section of the event.
     pub end: Section,
     /// The state there, to rounding.
     pub reached: Family,
 }
 
-/// A segment of all motions of a box of first states.
+/// A segment of all motions from a box of initial states.
 #[derive(Clone, Debug)]
 pub struct Passage {
-    /// What the motion from the centre has come to.
+    /// The end of the motion from the centre.
     pub centre: Family,
     /// The derivatives of the free coordinates at the end by those at the beginning.
     pub by: Block,
-    /// What is known in between.
+    /// The enclosures of the steps.
     pub pieces: Vec<Piece>,
-    /// All motions about the end, in the coordinates of the mode, and from where to where it may be, counted from the end of the last piece.
+    /// All motions between the end of the last piece and the event, in the coordinates of the mode.
     pub near: Family,
-    /// When the end is reached, counted from that of the last piece, in lengths of it.
+    /// When the event is reached, from the end of the last piece, in lengths of that piece.
     pub delay: Interval,
 }
 
@@ -51,19 +51,19 @@ const LEAST: f64 = 1e-7;
 const GREATEST: f64 = 0.5;
 /// Most steps of a segment.
 const STEPS: usize = 4000;
-/// Largest share of the states that a step of a plan leaves out: rounding.
+/// Largest relative truncation error of a planned step: below rounding.
 const LEFT_OUT: f64 = 1e-17;
-/// Places of a step at which an event is looked for.
+/// Points of a step at which events are looked for.
 const PLACES: usize = 32;
-/// Halvings to find it.
+/// Bisections to locate an event.
 const HALVINGS: usize = 60;
-/// Newton's iterations for its time as a polynomial: each doubles the order.
+/// Newton iterations for the time of an event as a polynomial: each doubles the order.
 const AIMED: usize = 4;
 
-/// A state as the first states after an event, the fixed coordinate exact, with the free ones `away` from it.
+/// The initial states after an event: the state of a node, with an exact fixed coordinate and the free ones `away` from it.
 fn first(equations: &Equations, node: &Node, away: &[Interval]) -> States {
     let (mut centre, mut wide, mut by) = (node.state, [Interval::ZERO; STATE], identity());
-    // With the centre itself, from which the mean value theorem counts: a box that Krawczyk's operator has made may be beside it.
+    // Include the centre, about which the mean value theorem is applied: a box from Krawczyk's operator may not contain it.
     node.event.free().into_iter().zip(away).for_each(|(i, away)| wide[i] = away.hull(Interval::ZERO));
     centre[node.event.fixed()] = match node.event {
         Event::Leave(side) => Taylor::from(equations.walls[side as usize]),
@@ -79,7 +79,7 @@ fn first(equations: &Equations, node: &Node, away: &[Interval]) -> States {
     States::first(&centre, wide, by)
 }
 
-/// What motions may come to, and where: the ends of a segment, the crest at a phase if one is given, and the end of a force.
+/// The sections that motions may reach: the ends of a segment, the crest at a phase if one is given, and the end of a contact's force.
 fn sections(Flow { equations, mode }: Flow<'_>, crest: Option<Interval>) -> Vec<Section> {
     let mut all = Vec::new();
     match mode {
@@ -99,7 +99,7 @@ fn sections(Flow { equations, mode }: Flow<'_>, crest: Option<Interval>) -> Vec<
     all.into_iter().map(|(event, value)| Section { event, value }).collect()
 }
 
-/// How far a motion is from a section: above zero until it comes there.
+/// The distance of a motion from a section, positive until it is reached.
 impl Quantity for Section {
     fn series<T: Number>(&self, _: Mode, motion: &[[T; STATE]]) -> Vec<T> {
         let mut series: Vec<T> = motion.iter().map(|c| c[self.event.fixed()]).collect();
@@ -109,7 +109,7 @@ impl Quantity for Section {
     }
 }
 
-/// The first event during a piece, by its middles: at which share of it, and which.
+/// The first event during a piece, approximately, by midpoints: its share of the piece, and its section.
 fn first_event<'a>(sections: &'a [Section], piece: &Piece) -> Option<(f64, &'a Section)> {
     let found = sections.iter().filter_map(|section| {
         let range = Range::new(piece.series_of(section));
@@ -126,10 +126,10 @@ fn first_event<'a>(sections: &'a [Section], piece: &Piece) -> Option<(f64, &'a S
     found.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// Plans the way from an event to the next one. `crest` is the phase of a crest at which it ends, if it comes to it.
+/// Plans the steps from an event to the next one, or to the crest at the phase `crest` if that comes first.
 ///
 /// # Errors
-/// No next event, or none that is crossed with a speed.
+/// There is no next event, or it is not crossed at a speed.
 pub fn plan(equations: &Equations, node: &Node, crest: Option<Interval>) -> Result<Plan, Failure> {
     plan_from(Flow::after(equations, node.event), first(equations, node, &[]), crest)
 }
@@ -153,8 +153,8 @@ fn plan_from(flow: Flow<'_>, mut states: States, crest: Option<Interval>) -> Res
     Err(Failure::Endless(STEPS, states.width()))
 }
 
-/// The same steps for a family: all longer or shorter by one share, so that the last one ends at the event for all values of the parameter, to the order that the
-/// states have.
+/// The steps of a plan for a family: all scaled by one factor, so that the last one ends at the event for all values of the parameter, to
+/// the order of the states' polynomials.
 pub fn aimed(equations: &Equations, node: &Node, plan: &Plan) -> Plan {
     let flow = Flow::after(equations, node.event);
     let mut state = first(equations, node, &[]).centre();
@@ -174,7 +174,7 @@ pub fn aimed(equations: &Equations, node: &Node, plan: &Plan) -> Plan {
     Plan { steps, ..plan.clone() }
 }
 
-/// A step that leaves out no more than rounding, as long as possible: what it comes to, what is known in between, and its length.
+/// The longest step, up to `longest`, whose truncation error is below rounding: the states after it, its enclosure, and its length.
 fn sharp_step(flow: Flow<'_>, states: &States, longest: f64) -> Result<(States, Piece, f64), Failure> {
     let mut h = longest;
     while h > LEAST {
@@ -196,10 +196,10 @@ fn in_flight(flow: Flow<'_>, mut state: Family) -> Family {
     state
 }
 
-/// Follows all motions of a box about a node, by the steps of a plan, and proves that they come to its end and to nothing before.
+/// Follows all motions from a box about a node by the steps of a plan, and proves that they reach its end and no other event before.
 ///
 /// # Errors
-/// It cannot be proven for a box as wide.
+/// This cannot be proven for so wide a box.
 pub fn follow(equations: &Equations, node: &Node, away: &[Interval], way: &Plan) -> Result<Passage, Failure> {
     let (flow, Plan { steps, end, .. }) = (Flow::after(equations, node.event), way);
     let (mut states, mut pieces) = (first(equations, node, away), Vec::with_capacity(steps.len()));
@@ -208,7 +208,7 @@ pub fn follow(equations: &Equations, node: &Node, away: &[Interval], way: &Plan)
         let (next, piece) =
             step(flow, &states, h, ORDER).ok_or_else(|| Failure::Step(h.mid(), states.width()))?;
         for section in &sections {
-            // A wall that a motion leaves, or the end of the contact that begins.
+            // The wall that the motion leaves, or the end of the contact that begins.
             let starts = k == 0 && section.event.is_beside(node.event);
             let ends = k + 1 == steps.len() && section.event == end.event;
             if !Range::new(piece.series_of(section)).is_positive(starts, ends) {
@@ -219,14 +219,14 @@ pub fn follow(equations: &Equations, node: &Node, away: &[Interval], way: &Plan)
         states = next;
     }
     let crossing = cross(flow, &states, end).ok_or_else(|| Failure::Graze(end.event, states.width()))?;
-    // What it does not end at is not reached about the end either.
+    // No other section is reached near the end either.
     for section in sections.iter().filter(|section| section.event != end.event) {
         let left = section.value - crossing.near[section.event.fixed()].hull();
         if !section.is_towards(left) {
             return Err(Failure::Graze(section.event, states.width()));
         }
     }
-    // From a contact with the structure or to its end the speed changes its sign.
+    // The speed changes its sign between the coordinates of a contact with the structure and of a flight.
     let sign = |i: usize| if i == 1 { flow.sign() } else { Interval::ONE };
     let (rows, columns) = (end.event.free(), node.event.free());
     let by = |i: usize, j: usize| crossing.by[i][j].times(sign(i) * sign(j));
@@ -239,7 +239,7 @@ pub fn follow(equations: &Equations, node: &Node, away: &[Interval], way: &Plan)
     })
 }
 
-/// Where the rest of a contact ends that has come to a state `[q, w, x1, v1, φ, 0]`.
+/// The end of a contact that has reached the state `[q, w, x1, v1, φ, 0]`.
 ///
 /// # Errors
 /// See [`plan`].
@@ -260,7 +260,8 @@ mod tests {
     use crate::step::tests::scene;
     use std::slice;
 
-    /// A crest at the phase 0.1, 16 ms on, by a plan of one step of 1 ms: on the long way from there to the crest the damper touches a wall, or it moves away from it.
+    /// A crest at the phase 0.1, 16 ms later, by a plan of one step of 1 ms: on the long way to the crest the damper touches a wall, or
+    /// moves away from it.
     #[test]
     fn contract_a_wall_that_is_touched_after_the_last_step_is_seen() {
         let equations = scene();
@@ -284,8 +285,8 @@ mod tests {
         }
     }
 
-    /// By that plan and by a sharp one: the long way from the last step to the crest holds what many terms say of the end, of its derivatives, and of the energy until
-    /// then, which grows.
+    /// By that plan and by a sharp one: the enclosures over the long way to the crest contain the sharp end, its derivatives, and the
+    /// energy until then, which grows.
     #[test]
     fn invariant_a_long_way_to_the_end_holds_what_a_sharp_plan_says() {
         let equations = scene();
@@ -311,7 +312,8 @@ mod tests {
         }
     }
 
-    /// The mean value theorem goes from the centre to each state of a box: the motions are those from both, though the box is beside the centre.
+    /// The mean value theorem connects the centre with each state of a box: the enclosure holds the motions between, even if the box is
+    /// beside the centre.
     #[test]
     fn contract_the_centre_is_among_the_states_of_a_box_beside_it() {
         let equations = scene();

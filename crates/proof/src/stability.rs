@@ -1,4 +1,4 @@
-//! Whether small changes of a motion die out: its multipliers, the eigenvalues of the product of all segments' derivatives.
+//! The stability of a motion: bounds on its multipliers, the eigenvalues of the product of all segments' derivatives.
 
 use crate::number::{Block, FREE, matrix, times};
 use crate::segment::Passage;
@@ -7,29 +7,29 @@ use nalgebra::{Complex, Matrix4, SMatrix};
 use serde::Serialize;
 use std::array;
 
-/// Where between the largest multiplier in doubles and 1 a bound on it is tried.
+/// Bounds to try, as shares of the way from the largest computed multiplier to 1.
 const SHARP: [f64; 7] = [1e-6, 1e-4, 1e-2, 0.1, 0.5, 0.8, 0.95];
 
-/// Multipliers are not looked at if they are smaller.
+/// Least size of a multiplier for scaling.
 const LEAST: f64 = 1e-6;
 
-/// How often the range of a family's parameter is halved.
+/// Maximum depth of bisection of a family's range.
 const DEPTH: u32 = 6;
 
-/// What is proven of the multipliers.
+/// The proven statement on the multipliers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stability {
-    /// All are smaller than this, which is at most 1.
+    /// All are smaller in size than this, which is at most 1.
     Stable(f64),
-    /// One is larger than 1; the largest, as it is computed.
+    /// One is larger in size than 1; the largest, as computed.
     Unstable(Multiplier),
     /// Neither is proven.
     Open(Multiplier),
 }
 
 impl Stability {
-    /// What all multipliers are below.
+    /// The bound on all multipliers.
     ///
     /// # Errors
     /// It is not proven to be stable.
@@ -41,19 +41,19 @@ impl Stability {
     }
 }
 
-/// Whether a motion, or each of a family, is stable, from what is known of its segments.
+/// Whether a motion, or each of a family, is stable, from its segments.
 pub fn stability(passages: &[Passage]) -> Stability {
     let segments: Vec<Block> = passages.iter().map(|passage| passage.by).collect();
     let is_constant = segments.iter().flatten().flatten().all(|x| x.is_constant());
     stability_over(&segments, [0.0, 1.0], if is_constant { 0 } else { DEPTH })
 }
 
-/// That of the part of a family from `middle - half` to `middle + half`.
+/// The stability of the part of a family from `middle - half` to `middle + half`.
 fn stability_over(segments: &[Block], [middle, half]: [f64; 2], depth: u32) -> Stability {
     let part = |m: &Block| m.map(|row| row.map(|x| x.part([middle, half])));
-    let own = stability_of(&segments.iter().map(part).collect::<Vec<_>>());
-    if !matches!(own, Stability::Open(_)) || depth == 0 {
-        return own;
+    let whole = stability_of(&segments.iter().map(part).collect::<Vec<_>>());
+    if !matches!(whole, Stability::Open(_)) || depth == 0 {
+        return whole;
     }
     let quarter = 0.5 * half;
     let parts =
@@ -61,11 +61,11 @@ fn stability_over(segments: &[Block], [middle, half]: [f64; 2], depth: u32) -> S
     match parts {
         [Stability::Stable(a), Stability::Stable(b)] => Stability::Stable(a.max(b)),
         [Stability::Unstable(largest), Stability::Unstable(_)] => Stability::Unstable(largest),
-        _ => own,
+        _ => whole,
     }
 }
 
-/// Whether all multipliers of all matrices are below 1, or one of each is above.
+/// Whether all multipliers are below 1 for all matrices in the enclosures, or one is above 1 for each of them.
 fn stability_of(segments: &[Block]) -> Stability {
     let product = segments.iter().fold(Matrix4::identity(), |product, m| middle(m) * product);
     let larger = |most: Complex<f64>, x: &Complex<f64>| if x.norm() > most.norm() { *x } else { most };
@@ -73,20 +73,20 @@ fn stability_of(segments: &[Block]) -> Stability {
     let widths = segments.iter().flatten().flatten().map(|x| x.hull().width());
     let computed = Multiplier { re, im: im.abs(), derivatives: widths.fold(0.0, f64::max) };
     let largest = Complex { re, im }.norm();
-    // A bound on the multipliers is the product of those on the segments.
+    // The bound on the multipliers is the product of equal shares, one for each segment.
     let share = |x: f64| x.max(LEAST).powf(1.0 / segments.len() as f64);
     if largest > 1.0 {
         let above = share(largest.sqrt()).max(1.0);
         let is_unstable = are_below(segments, above, above) == Some(false);
         return if is_unstable { Stability::Unstable(computed) } else { Stability::Open(computed) };
     }
-    // Half-way between the multipliers and the bound the forms fall most.
+    // The forms decrease most if scaled half-way between the multipliers and the bound.
     let is_stable =
         |bound: f64| are_below(segments, share(bound), share((largest * bound).sqrt())) == Some(true);
     let power = |bound: f64| {
         segments.iter().fold(Interval::ONE, |power, _| power * Interval::point(share(bound))).hi()
     };
-    // The root of 1 is 1, whoever computes it: this rests on no library.
+    // The root of 1 must be 1; checked, so that no library is relied on.
     if power(1.0) > 1.0 || !is_stable(1.0) {
         return Stability::Open(computed);
     }
@@ -103,17 +103,17 @@ fn points(of: &Matrix4<f64>) -> Block {
     matrix(|i, j| Taylor::point(of[(i, j)]))
 }
 
-/// Whether all multipliers of the product of so many matrices, each over `bound`, are below 1 (true), or one is above (false); none if neither is proven.
-/// The forms that show it are those of the matrices over `between`.
+/// Whether all multipliers of the product of the matrices, each divided by `bound`, are proven below 1 (true), or one above (false); none
+/// if neither is. The forms used are those of the matrices divided by `between`.
 ///
 /// Let symmetric `V₀, …, Vₘ = V₀` have positive definite `Vₖ - Nₖᵀ Vₖ₊₁ Nₖ`. Then `V₀ - Nᵀ V₀ N` is positive definite for the product `N` too, so `xᵀ V₀ x`
-/// falls along `x, N x, N² x, …`, and no multiplier has the size 1, as `v* V₀ v` would not fall for its vector. If `V₀` is positive definite
-/// itself, all are below 1 (P. Stein, 1952). If `xᵀ V₀ x` is negative for some `x`, it stays so and falls for ever: `Nᵏ x` does not tend to
-/// zero, and one is above 1.
+/// decreases along `x, N x, N² x, …`, and no multiplier has the size 1, as `v* V₀ v` would not decrease for its eigenvector. If `V₀` is
+/// positive definite itself, all are below 1 (P. Stein, 1952). If `xᵀ V₀ x` is negative for some `x`, it stays so and keeps decreasing:
+/// `Nᵏ x` does not tend to zero, and one is above 1.
 fn are_below(segments: &[Block], bound: f64, between: f64) -> Option<bool> {
     let over = Taylor::from(Interval::ONE / Interval::point(bound));
     let scaled: Vec<Block> = segments.iter().map(|m| m.map(|row| row.map(|x| x * over))).collect();
-    // Any symmetric matrices will do that pass.
+    // Any symmetric matrices that pass the test will do.
     let forms = forms(&segments.iter().map(|m| middle(m) / between).collect::<Vec<_>>())?;
     if are_falling(&scaled, &forms) { is_positive(&forms[0]) } else { None }
 }
@@ -139,26 +139,26 @@ fn symmetric(a: Matrix4<f64>) -> Matrix4<f64> {
     (a + a.transpose()) * 0.5
 }
 
-/// Whether all `Vₖ - Nₖᵀ Vₖ₊₁ Nₖ` are positive definite: seen in coordinates `C` in which they are near the identity, as they are if `Cᵀ (…) C` is,
-/// which is zero on what `C` makes zero.
+/// Whether all `Vₖ - Nₖᵀ Vₖ₊₁ Nₖ` are proven positive definite. Tested as `Cᵀ (…) C`, near the identity for a suitable `C`: if this is
+/// positive definite, `C` is regular, since `Cᵀ (…) C` vanishes on its kernel.
 fn are_falling(scaled: &[Block], forms: &[Matrix4<f64>]) -> bool {
     scaled.iter().enumerate().all(|(k, n)| {
         let (v, next) = (&forms[k], &forms[(k + 1) % forms.len()]);
         let falls = v - middle(n).transpose() * next * middle(n);
         let root = symmetric(falls).cholesky().and_then(|root| root.l().transpose().try_inverse());
         root.map(|c| points(&c)).is_some_and(|c| {
-            let (before, after) = (seen(&points(v), &c), seen(&points(next), &times(n, &c)));
+            let (before, after) = (congruent(&points(v), &c), congruent(&points(next), &times(n, &c)));
             is_positive_definite(&matrix(|i, j| before[i][j] - after[i][j]))
         })
     })
 }
 
-/// A form in other coordinates, `Cᵀ V C`.
-fn seen(form: &Block, c: &Block) -> Block {
+/// The congruence transform `Cᵀ V C` of a form.
+fn congruent(form: &Block, c: &Block) -> Block {
     times(&times(&matrix(|i, j| c[j][i]), form), c)
 }
 
-/// Whether a symmetric matrix is positive definite (true), or negative in some direction (false); none if neither is proven.
+/// Whether a symmetric matrix is proven positive definite (true), or negative in some direction (false); none if neither.
 fn is_positive(form: &Matrix4<f64>) -> Option<bool> {
     let v = points(form);
     if is_positive_definite(&v) {
@@ -171,7 +171,7 @@ fn is_positive(form: &Matrix4<f64>) -> Option<bool> {
     terms.fold(Interval::ZERO, |sum, term| sum + term).is_negative().then_some(false)
 }
 
-/// Whether all symmetric matrices are positive definite: all pivots of Gauss's elimination are positive.
+/// Whether all symmetric matrices in an enclosure are positive definite: all pivots of Gaussian elimination are positive.
 fn is_positive_definite(matrix: &Block) -> bool {
     let mut a = matrix.map(|row| row.map(Taylor::hull));
     for k in 0..FREE {
@@ -225,7 +225,7 @@ mod tests {
         }
     }
 
-    /// Each of two matrices alone is unstable, their product stable; and the other way round.
+    /// Two matrices that are each unstable with a stable product, and the reverse.
     #[test]
     fn exact_of_several_segments_the_product_counts() {
         let diagonal = |d: [f64; 4]| -> Block {

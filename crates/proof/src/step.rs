@@ -1,4 +1,4 @@
-//! One validated step of the motions from a set of states, together with their derivatives by the first state.
+//! One validated step of the motions from a set of states, with their derivatives by the initial state.
 
 use crate::equations::{Flow, Mode, at};
 use crate::number::{
@@ -7,19 +7,19 @@ use crate::number::{
 use crate::{Interval, Number, Taylor};
 use std::array;
 
-/// Terms of a Taylor polynomial: the first power that is left out.
+/// Terms of a Taylor polynomial: the first omitted power.
 pub const ORDER: usize = 20;
-/// A coordinate that hardly moves, in SI units.
+/// Least size of a coordinate for relative errors, in SI units.
 const SMALL: f64 = 1e-6;
-/// Attempts to find a box that no motion leaves during a step.
+/// Attempts to find an enclosure of a step.
 const ATTEMPTS: usize = 24;
-/// How much a box that is too small is widened, as a share of its width.
+/// Widening of a box that is too small, as a share of its width.
 const WIDER: f64 = 0.1;
 
-/// The states that motions have come to, from all first states `x` of a box around the centre `x̂`, of a family for each value of its parameter.
+/// The states of all motions from initial states `x` in a box around the centre `x̂`; for a family for each value of its parameter.
 ///
-/// The motion from `x̂` is in `middle + frame · spread`, and another one is away from it by `by · (x - x̂)`: the mean value theorem, with
-/// the derivatives at all states of the box.
+/// The motion from `x̂` is in `middle + frame · spread`, and any other one differs from it by `by · (x - x̂)`, by the mean value theorem
+/// with the derivatives over the whole box.
 #[derive(Clone, Debug)]
 pub struct States {
     /// Polynomials without rest.
@@ -33,18 +33,18 @@ pub struct States {
 }
 
 impl States {
-    /// The first states: `x̂` in `centre`, and what they are away from it in `away`, which contains zero, by their derivatives `by` it.
+    /// The initial states: `x̂` in `centre`, the differences from it in `away`, which contains zero, and the derivatives `by`.
     pub fn first(centre: &Family, away: State, by: Matrix<Taylor>) -> Self {
         let middle = centre.map(Taylor::polynomial);
         Self { middle, frame: Frame::identity(), spread: centre.map(Taylor::rest), by, away }
     }
 
-    /// What the motion from `x̂` has come to.
+    /// The state of the motion from `x̂`.
     pub fn centre(&self) -> Family {
         plus(&self.middle, &times_vector(&self.frame.matrix(), &self.spread).map(Taylor::from))
     }
 
-    /// What all of them have come to.
+    /// An enclosure of the states of all motions.
     pub fn all(&self) -> Family {
         let moved = |i: usize| {
             (0..STATE).fold(Taylor::ZERO, |sum, j| sum + self.by[i][j] * Taylor::from(self.away[j]))
@@ -52,37 +52,37 @@ impl States {
         plus(&self.centre(), &array::from_fn(moved))
     }
 
-    /// The largest width of that.
+    /// The largest width of [`Self::all`].
     pub fn width(&self) -> f64 {
         width(&self.all().map(Taylor::hull))
     }
 }
 
-/// What is known of all motions during a step, by the share of it that is over, from 0 to 1.
+/// Enclosures of all motions during a step, as series in its elapsed share, from 0 to 1.
 #[derive(Clone, Debug)]
 pub struct Piece {
-    /// What the damper does.
+    /// The mode of the damper.
     pub mode: Mode,
-    /// Taylor coefficients at the beginning, times the power of the length of the step.
+    /// Taylor coefficients at the beginning, times powers of the step length.
     pub at_start: Vec<Family>,
-    /// The same anywhere in the step; the last one, of the power that `at_start` has no more, bounds what a polynomial leaves out.
+    /// Taylor coefficients anywhere in the step, with one power more than `at_start`: the last one bounds the truncation error.
     pub anywhere: Vec<State>,
 }
 
-/// A box that the motions from all states of `start` are in while the independent variable changes by any of `h`, which contains zero.
+/// An enclosure of the motions from all states of `start` while the independent variable changes by any of `h`, which contains zero.
 ///
-/// If `start + h f(E)` is in `E`, they are in `E` (Picard and Lindelöf): a motion that left `E` first would be in `E` up to then, so its change
-/// would be in `h f(E)`.
+/// If `start + h f(E)` is in `E`, the motions are in `E` (Picard and Lindelöf): up to the moment a motion first left `E` it would be in
+/// `E`, so its change would be in `h f(E)`.
 pub fn enclosure(flow: Flow<'_>, start: &State, h: Interval) -> Option<State> {
     let reached = |e: &State| {
         let slopes = flow.derivative(e);
         array::from_fn(|i| start[i] + h * slopes[i])
     };
-    fixed(reached(start), reached)
+    self_contained(reached(start), reached)
 }
 
-/// A box that holds what a map makes of it, from a first guess.
-fn fixed(guess: State, map: impl Fn(&State) -> State) -> Option<State> {
+/// A box that contains its own image under a map, from an initial guess.
+fn self_contained(guess: State, map: impl Fn(&State) -> State) -> Option<State> {
     let mut e = guess;
     for _ in 0..ATTEMPTS {
         e = e.map(|x| x.wider(WIDER * x.width() + f64::MIN_POSITIVE));
@@ -98,21 +98,20 @@ fn fixed(guess: State, map: impl Fn(&State) -> State) -> Option<State> {
     None
 }
 
-/// The derivatives by the state at the beginning of a step, anywhere in it, where the motions are in `e`: `W` with `I + h f'(e) W` in `W`.
+/// The derivatives anywhere in a step by the state at its beginning, where the motions are in `e`: `W` with `I + h f'(e) W` in `W`.
 pub fn derivatives_within(flow: Flow<'_>, e: &State, h: Interval) -> Option<Matrix> {
     let slopes = flow.derivative(&Gradient::coordinates(e)).map(|slope| slope.by);
     let mut within = identity();
     for j in 0..STATE {
         let unit: State = array::from_fn(|i| within[i][j]);
         let change = |column: &State| times_vector(&slopes, column).map(|slope| h * slope);
-        let column = fixed(plus(&unit, &change(&unit)), |column| plus(&unit, &change(column)))?;
+        let column = self_contained(plus(&unit, &change(&unit)), |column| plus(&unit, &change(column)))?;
         (0..STATE).for_each(|i| within[i][j] = column[i]);
     }
     Some(within)
 }
 
-/// A step of the length `h` with so many terms: what the states have become, and what is known in between. None if no box was found that the motions stay
-/// in.
+/// A step of length `h` with `order` terms: the states after it, and the enclosures during it. None if no enclosure was found.
 pub fn step(flow: Flow<'_>, states: &States, h: Taylor, order: usize) -> Option<(States, Piece)> {
     let length = h.hull();
     if !length.is_positive() {
@@ -130,7 +129,7 @@ pub fn step(flow: Flow<'_>, states: &States, h: Taylor, order: usize) -> Option<
     let step: Matrix<Taylor> =
         matrix(|i, j| at(series.iter().map(|c| c[i].by[j]), h) + Taylor::from(by_left_out[i][j]));
 
-    // The motion from the centre: that from the middle of its box, and what its box becomes.
+    // The motion from the centre: the motion from the middle of its box, and the image of the box.
     let from_middle = flow.series(&states.middle, order - 1);
     let reached = |i: usize| at(from_middle.iter().map(|c| c[i]), h) + Taylor::from(anywhere[order][i]);
     let reached: Family = array::from_fn(reached);
@@ -146,7 +145,7 @@ pub fn step(flow: Flow<'_>, states: &States, h: Taylor, order: usize) -> Option<
     Some((next, Piece { mode: flow.mode, at_start: in_shares(&series, h).0, anywhere }))
 }
 
-/// The terms of a series times the powers of the length of a step, and the power of the last one.
+/// The terms of a series times powers of the step length, and the last of these powers.
 fn in_shares<T: Number>(series: &[[Gradient<T>; STATE]], h: T) -> (Vec<[T; STATE]>, T) {
     let mut power = T::constant(Interval::ONE);
     let scaled = series.iter().enumerate().map(|(k, c)| {
@@ -157,7 +156,7 @@ fn in_shares<T: Number>(series: &[[Gradient<T>; STATE]], h: T) -> (Vec<[T; STATE
 }
 
 impl Piece {
-    /// The largest share of a coordinate that the polynomials leave out; of one that hardly moves, of [`SMALL`].
+    /// The largest truncation error of the polynomials, relative to the size of a coordinate, or to [`SMALL`] if that is larger.
     pub fn left_out(&self) -> f64 {
         let share = |i: usize| {
             let size: f64 = self.at_start.iter().map(|c| c[i].mid().abs()).sum();
@@ -166,7 +165,7 @@ impl Piece {
         (0..STATE).map(share).fold(0.0, f64::max)
     }
 
-    /// The Taylor series of one quantity over the step: the coefficients at its beginning, and the last one anywhere in it.
+    /// The Taylor series of a quantity over the step: the coefficients at its beginning, and the last one anywhere in it.
     pub fn series_of(&self, quantity: &impl Quantity) -> Vec<Taylor> {
         let mut series = quantity.series(self.mode, &self.at_start);
         series.extend(quantity.series(self.mode, &self.anywhere).pop().map(Taylor::from));
@@ -176,7 +175,7 @@ impl Piece {
 
 /// A quantity of a motion.
 pub trait Quantity {
-    /// Its series from that of the motion.
+    /// Its series, from that of the motion.
     fn series<T: Number>(&self, mode: Mode, motion: &[[T; STATE]]) -> Vec<T>;
 }
 
@@ -205,7 +204,7 @@ pub(crate) mod tests {
         Equations::new(&scene_with(&damper)).expect("equations")
     }
 
-    /// The states from one state after `n` equal steps, and the motion between.
+    /// The states from one state after `n` equal steps, and the enclosures between.
     fn after(order: usize, flow: Flow<'_>, start: [f64; STATE], h: f64, n: usize) -> (States, f64) {
         let mut states = States::first(&start.map(Taylor::point), [Interval::ZERO; STATE], identity());
         let mut left_out = 0.0;
@@ -224,7 +223,8 @@ pub(crate) mod tests {
         (Mode::Contact(Side::Obstacle), [0.06, -0.3, 0.05, 0.3, 2.0, 0.0], 0.02),
     ];
 
-    /// In one step a polynomial of the fifth degree leaves out much more than rounding; in sixteen of the twentieth order, nothing. Both enclose the same motion and the same derivatives.
+    /// One step with a polynomial of degree five has a truncation error far above rounding, sixteen steps of order twenty have none. Both
+    /// enclose the same motion and the same derivatives.
     #[test]
     fn invariant_one_long_step_holds_what_many_short_ones_say() {
         for (mode, start, h) in STARTS {
@@ -244,7 +244,7 @@ pub(crate) mod tests {
         }
     }
 
-    /// Motions from the corners of a box stay in what the box becomes.
+    /// Motions from the corners of a box stay in its enclosures.
     #[test]
     fn invariant_a_box_holds_the_motions_from_its_corners() {
         for (mode, start, h) in STARTS {
@@ -277,7 +277,8 @@ pub(crate) mod tests {
         }
     }
 
-    /// Of a quantity a step of the fifth degree leaves out much more than rounding, too: its values during the step and at the end are those by many sharp steps.
+    /// The truncation error of a quantity in a step of degree five is far above rounding, too: its values during the step and at the end
+    /// contain those by many sharp steps.
     #[test]
     fn invariant_the_range_of_a_quantity_holds_its_values_by_sharp_steps() {
         for (mode, start, h) in STARTS {
@@ -295,7 +296,7 @@ pub(crate) mod tests {
         }
     }
 
-    /// A box that the motions leave during a step is no enclosure.
+    /// A box that motions leave during a step is not an enclosure.
     #[test]
     fn contract_no_box_is_found_for_too_long_a_step() {
         for (mode, start, _) in STARTS {

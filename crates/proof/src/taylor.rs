@@ -1,6 +1,8 @@
-//! Functions of one parameter: polynomials with a bound on the rest (Taylor models, K. Makino and M. Berz, Int. J. Pure Appl. Math. 6 (2003) 239).
+//! Functions of one parameter: polynomials with a remainder bound (Taylor models, K. Makino and M. Berz, Int. J. Pure Appl. Math. 6 (2003)
+//! 239).
 //!
-//! Coefficients are doubles; what they round goes into the rest. A constant is a polynomial of one term, and costs no more than an interval does.
+//! Coefficients are doubles; their rounding errors go into the rest. A constant is a polynomial of one term, and costs no more than an
+//! interval.
 
 use crate::{Interval, cos_sin};
 use std::array;
@@ -20,7 +22,7 @@ pub struct Taylor {
     rest: f64,
 }
 
-/// A bound on a sum of fewer than 100 products of positive numbers that was computed as `x`; 2⁻¹⁰²² covers what they lose below it.
+/// A bound on a sum of fewer than 100 products of positive numbers that was computed as `x`; 2⁻¹⁰²² covers underflow.
 fn bound(x: f64) -> f64 {
     x * (1.0 + 256.0 * f64::EPSILON) + f64::MIN_POSITIVE
 }
@@ -46,7 +48,7 @@ impl Taylor {
         Self { rest: 0.0, ..self }
     }
 
-    /// What a function may differ by from the polynomial.
+    /// The remainder: the difference of a function from the polynomial.
     pub fn rest(self) -> Interval {
         Interval::around_zero(self.rest)
     }
@@ -61,7 +63,7 @@ impl Taylor {
         self.c[0]
     }
 
-    /// The polynomial at a place, also beyond 1, to rounding.
+    /// The polynomial at `s`, also beyond 1, to rounding.
     pub fn near(self, s: f64) -> f64 {
         self.c.iter().rev().fold(0.0, |sum, c| sum * s + c)
     }
@@ -88,7 +90,7 @@ impl Taylor {
     }
 }
 
-/// A quantity that sums and products can be taken of.
+/// A number type of the proofs, with sums, products and some functions.
 pub trait Number: Copy + Add<Output = Self> + Neg<Output = Self> + Mul<Output = Self> {
     /// A constant.
     fn constant(value: Interval) -> Self;
@@ -135,7 +137,8 @@ impl Number for Taylor {
         if factor == Interval::ONE { self } else { self * Self::from(factor) }
     }
 
-    /// Nothing is known where one may be zero. With any polynomial `p` and `e = 1 - f p` it is `p/(1 - e)`, which differs from `p` by at most `|p| |e| / (1 - |e|)`.
+    /// The remainder is infinite where a function may be zero. With any polynomial `p` and `e = 1 - f p` the reciprocal is `p/(1 - e)`,
+    /// which differs from `p` by at most `|p| |e| / (1 - |e|)`.
     fn reciprocal(self) -> Self {
         let mut c = [0.0; TERMS];
         let used = if self.used > 1 { TERMS } else { 1 };
@@ -149,7 +152,7 @@ impl Number for Taylor {
         Self { rest, ..p }
     }
 
-    /// By the sums of the value at zero and of the difference from it.
+    /// By the addition theorems for the value at zero and the difference from it.
     fn cos_sin(self) -> [Self; 2] {
         let [c, s] = cos_sin(Interval::point(self.c[0])).map(Self::from);
         let [cos, sin] = near_zero(self - Self::point(self.c[0]), CIRCLE);
@@ -160,7 +163,8 @@ impl Number for Taylor {
 /// Terms of the series of sine and cosine.
 const CIRCLE: u32 = 12;
 
-/// `[cos f, sin f]` by Taylor's series; of `|f| < 1` its terms alternate and fall, so what is left out is at most the first of it.
+/// `[cos f, sin f]` by Taylor's series; for `|f| < 1` its terms alternate and decrease, so the truncation error is at most the first
+/// omitted term.
 fn near_zero(f: Taylor, terms: u32) -> [Taylor; 2] {
     let minus_square = -(f * f);
     let series = |first: Taylor, offset: u32| {
@@ -171,7 +175,7 @@ fn near_zero(f: Taylor, terms: u32) -> [Taylor; 2] {
             term = term * minus_square * Taylor::from(share);
             sum = sum + term;
         }
-        // The last term is counted twice, so that it stands for what is left out, too.
+        // The last term is counted in the rest, too, as a bound on the truncation error.
         Taylor { rest: bound(sum.rest + term.hull().magnitude()), ..sum }
     };
     if f.hull().magnitude() < 1.0 {
@@ -226,8 +230,8 @@ impl Sub for Taylor {
 impl Mul for Taylor {
     type Output = Self;
 
-    /// Each coefficient is a sum of at most `n` products, off by `n` roundings of the sum of their absolute values; terms beyond those that are kept are at
-    /// most their coefficients.
+    /// Each coefficient is a sum of at most `n` products, with an error of `n` roundings of the sum of their absolute values; omitted terms
+    /// are at most their coefficients.
     fn mul(self, other: Self) -> Self {
         if self == Self::ZERO || other == Self::ZERO {
             return Self::ZERO;
@@ -286,7 +290,7 @@ mod tests {
         }
     }
 
-    /// The rounding of a sum and of a product of two numbers is in the rest: a fused multiplication tells its sign.
+    /// The rest contains the rounding error of a sum and of a product of two numbers; a fused multiply-add gives its sign.
     #[test]
     fn exact_roundings_are_in_the_rest() {
         let mut seed = 7;
@@ -326,7 +330,7 @@ mod tests {
         }
     }
 
-    /// Of a few terms, where what is left out is far above rounding.
+    /// With few terms, so that the truncation error is far above rounding.
     #[test]
     fn exact_short_series_of_cosine_and_sine_hold_those_of_intervals() {
         for terms in 1..CIRCLE {

@@ -1,9 +1,9 @@
-//! The proof: of a motion with impacts by Krawczyk's operator, stability, and largest values; of a steady motion in closed form.
+//! The proof: for a motion with impacts by Krawczyk's operator, with stability and largest values; for a steady motion in closed form.
 //!
-//! Where a damper touches no wall, and where there is none, equation (1) is linear. A system that comes to rest without force has exactly one motion that repeats,
-//! and it is stable: `x1 = Re(X1 e^{iφ})`, `r = D + Re(R e^{iφ})`, where the force is `Re(F e^{iφ})`. With `S = k1 - m1 ω² + iω c1`, `Q = k2 + iω c2`,
-//! `d = Q - m2 ω²` and `N = S d - m2 ω² Q` they are `X1 = F d/N` and `R = F m2 ω²/N` (J. P. Den Hartog, Mechanical Vibrations, 4th ed. (1956), section 3.2;
-//! `retune_model::Steady` has them in doubles).
+//! Without a damper, or with one that touches no wall, equation (1) is linear. A system that comes to rest without force then has exactly
+//! one periodic motion, and it is stable: `x1 = Re(X1 e^{iφ})`, `r = D + Re(R e^{iφ})`, where the force is `Re(F e^{iφ})`. With
+//! `S = k1 - m1 ω² + iω c1`, `Q = k2 + iω c2`, `d = Q - m2 ω²` and `N = S d - m2 ω² Q` the amplitudes are `X1 = F d/N` and `R = F m2 ω²/N`
+//! (J. P. Den Hartog, Mechanical Vibrations, 4th ed. (1956), section 3.2; `retune_model::Steady` has them in doubles).
 
 use crate::elementary::pi;
 use crate::largest::{Largest, largest};
@@ -15,29 +15,30 @@ use crate::{Equations, Event, Failure, Interval, Number, Taylor};
 use retune_model::{Scene, Side};
 use serde::Serialize;
 
-/// How a box about a motion is looked for.
+/// How to search for a box about a motion.
 struct Search<'a> {
-    /// Half-widths that are tried, in what Krawczyk's operator makes of the centre alone.
+    /// Half-widths to try, in multiples of the image of the centre alone under Krawczyk's operator.
     tried: &'a [f64],
-    /// The largest, relative to the states, unless that is not even twice what it makes of the centre.
+    /// The largest half-width, relative to the states, but not less than twice that image.
     widest: f64,
-    /// Times that a proven box is made smaller by the operator.
-    smaller: usize,
+    /// Number of contractions of a proven box by the operator.
+    contractions: usize,
 }
 
-/// Of one motion: the largest box is looked for first.
-const ONE: Search<'_> = Search { tried: &[1e5, 1e4, 1e3, 100.0, 20.0, 5.0, 2.0], widest: 1e-6, smaller: 2 };
-/// Of a family, whose curvature the operator leaves.
-const MANY: Search<'_> = Search { tried: &[1.5, 3.0, 10.0], widest: f64::INFINITY, smaller: 0 };
-/// A box is at least so wide, relative to the states.
+/// For one motion: the largest box is tried first.
+const ONE: Search<'_> =
+    Search { tried: &[1e5, 1e4, 1e3, 100.0, 20.0, 5.0, 2.0], widest: 1e-6, contractions: 2 };
+/// For a family, whose curvature the operator does not reduce.
+const MANY: Search<'_> = Search { tried: &[1.5, 3.0, 10.0], widest: f64::INFINITY, contractions: 0 };
+/// Least half-width of a box, relative to the states.
 const NARROWEST: f64 = 1e-13;
 
-/// Halvings of the rate at which a motion comes to rest.
+/// Bisections for the decay rate of a motion.
 const HALVINGS: usize = 30;
 /// Terms of the exponential.
 const TERMS: u32 = 30;
 
-/// An event of a motion that is proven.
+/// An event of a proven motion.
 #[derive(Clone, Debug, Serialize)]
 pub struct Proven {
     /// What happens.
@@ -48,15 +49,15 @@ pub struct Proven {
     pub state: [Interval; 4],
 }
 
-/// What is proven of a scene: it has exactly one motion in a box that repeats after some periods of the force with these events.
+/// The theorem proven for a scene: in a box exactly one motion repeats after some periods of the force with these events.
 #[derive(Clone, Debug, Serialize)]
 pub struct Theorem {
     /// Periods of the force.
     pub periods: usize,
     /// The walls that it strikes in turn, S for the structure and O for the obstacle.
     pub impacts: String,
-    /// The largest width of the box with no other such motion, in m, m/s and rad, about the states at its events; none if no other motion that touches no wall
-    /// repeats at all.
+    /// The largest width of the box that holds no other such motion, in m, m/s and rad, about the states at its events; none if no other
+    /// motion without contact is periodic at all.
     pub alone_within: Option<f64>,
     /// The largest width of the box that it is in.
     pub width: f64,
@@ -68,8 +69,8 @@ pub struct Theorem {
     pub largest: Largest,
 }
 
-/// Proves what it can of the periodic motion of a scene near the one from the state `[x1, v1, x2, v2]` at a crest of the force. If that touches no wall, and the
-/// system comes to rest without force, the motion is the steady one.
+/// Proves the periodic motion of a scene near the one from the state `[x1, v1, x2, v2]` at a crest of the force. If that touches no wall,
+/// and the system comes to rest without force, it is the steady motion.
 ///
 /// # Errors
 /// See [`Failure`].
@@ -83,7 +84,7 @@ pub fn prove(scene: &Scene, start: [f64; 4], periods: usize) -> Result<Theorem, 
     if is_linear && guess.nodes.iter().all(|node| node.event == Event::Crest) {
         return steady(&equations);
     }
-    of_orbit(&equations, &guess.improved(&equations)?, &ONE)
+    prove_orbit(&equations, &guess.improved(&equations)?, &ONE)
 }
 
 /// The middle of a piece of a band, and half its width or more.
@@ -96,16 +97,17 @@ fn middle_and_half([from, to]: [f64; 2]) -> [f64; 2] {
 #[derive(Clone, Debug)]
 pub struct Family(Orbit, [f64; 2]);
 
-/// Where a motion is looked for.
+/// Where to look for a motion.
 #[derive(Clone, Copy, Debug)]
 pub enum Start<'a> {
     /// Near the one from a state.
     From(Guess),
-    /// In line with a family nearby.
+    /// By extrapolation of a nearby family.
     Beside(&'a Family),
 }
 
-/// Proves of each frequency of a piece of a band that it has a stable motion: the theorem holds at each, with one motion in the box, and bounds that hold for all.
+/// Proves a stable motion for every frequency of a piece of a band: the theorem holds at each, with one motion in the box, and its bounds
+/// hold for all.
 ///
 /// # Errors
 /// See [`Failure`].
@@ -117,30 +119,30 @@ pub fn prove_over(scene: &Scene, omega: [f64; 2], start: Start<'_>) -> Result<(T
         Start::Beside(Family(orbit, [other, width])) => orbit.member(&single, (middle - other) / width)?,
     };
     let Closed { orbit, known, .. } = guess.improved(&single)?;
-    // If that in the middle is not stable, those about it are not followed.
+    // Give up early if the motion at the middle is not stable.
     stability(&known.passages).stable()?;
     let all = equations.at(Taylor::line(middle, half));
     let closed = orbit.widened(&all)?;
-    let theorem = of_orbit(&all, &closed, &MANY)?;
+    let theorem = prove_orbit(&all, &closed, &MANY)?;
     theorem.stability.stable()?;
     Ok((theorem, Family(closed.orbit, [middle, half])))
 }
 
-/// What is proven of the motion near one that repeats to rounding, by the way from event to event; of a family for each value of its parameter.
-fn of_orbit(equations: &Equations, closed: &Closed, search: &Search<'_>) -> Result<Theorem, Failure> {
-    let [alone, mut away] = alone(equations, closed, search)?;
+/// Proves the motion near one that repeats to rounding, segment by segment; for a family for each value of its parameter.
+fn prove_orbit(equations: &Equations, closed: &Closed, search: &Search<'_>) -> Result<Theorem, Failure> {
+    let [unique, mut away] = unique_box(equations, closed, search)?;
     let orbit = &closed.orbit;
     let mut known = orbit.residual(equations, &away)?;
-    for _ in 0..search.smaller {
+    for _ in 0..search.contractions {
         let smaller = krawczyk(closed, &known, &away);
-        // It is in both.
-        away = smaller.iter().zip(&away).map(|(new, own)| new.meet(*own).unwrap_or(*own)).collect();
+        // The solution is in both.
+        away = smaller.iter().zip(&away).map(|(new, old)| new.meet(*old).unwrap_or(*old)).collect();
         known = orbit.residual(equations, &away)?;
     }
     Ok(Theorem {
         periods: orbit.periods,
         impacts: impacts(orbit),
-        alone_within: Some(width(&alone)),
+        alone_within: Some(width(&unique)),
         width: width(&away),
         events: events(equations, orbit, &away),
         stability: stability(&known.passages),
@@ -148,9 +150,13 @@ fn of_orbit(equations: &Equations, closed: &Closed, search: &Search<'_>) -> Resu
     })
 }
 
-/// A box about the nodes that is proven to hold exactly one solution, the first that is of some sizes, in what Krawczyk's operator makes of the nodes alone; and
-/// the smaller one that the solution is in.
-fn alone(equations: &Equations, closed: &Closed, search: &Search<'_>) -> Result<[Vec<Interval>; 2], Failure> {
+/// A box about the nodes that is proven to hold exactly one solution, the first that succeeds of the sizes to try, and the smaller one that
+/// contains the solution.
+fn unique_box(
+    equations: &Equations,
+    closed: &Closed,
+    search: &Search<'_>,
+) -> Result<[Vec<Interval>; 2], Failure> {
     let none = vec![Interval::ZERO; closed.known.gaps.len()];
     let least = krawczyk(closed, &closed.known, &none);
     let mut failure = Failure::Krawczyk(0.0, 0.0);
@@ -175,10 +181,11 @@ fn alone(equations: &Equations, closed: &Closed, search: &Search<'_>) -> Result<
     Err(failure)
 }
 
-/// Krawczyk's operator on the box `x̂ + away`, from `x̂`: `-A F(x̂) + (I - A F'(box)) away`, with `A` near the inverse of the derivatives, and `F'` of what is
-/// `known` of the box; of a family for each value of its parameter.
+/// Krawczyk's operator on the box `x̂ + away`, relative to `x̂`: `-A F(x̂) + (I - A F'(box)) away`, with `A` near the inverse of the
+/// derivatives, and `F'` from the residual `known` over the box; for a family for each value of its parameter.
 ///
-/// If it is in the interior of `away`, the box holds exactly one solution, and the solution is in it (R. Krawczyk, 1969; R. E. Moore, 1977).
+/// If the image is in the interior of `away`, the box holds exactly one solution, which is in the image (R. Krawczyk, 1969; R. E. Moore,
+/// 1977).
 fn krawczyk(Closed { orbit, inverse, .. }: &Closed, known: &Residual, away: &[Interval]) -> Vec<Interval> {
     let moved = applied(inverse, &known.gaps);
     let off = off(inverse, &orbit.jacobian(&known.passages));
@@ -189,7 +196,7 @@ fn krawczyk(Closed { orbit, inverse, .. }: &Closed, known: &Residual, away: &[In
     moved.iter().zip(&off).map(row).collect()
 }
 
-/// The walls in turn.
+/// The walls struck, in order.
 fn impacts(orbit: &Orbit) -> String {
     let letter = |event: Event| match event {
         Event::Touch(Side::Primary) => Some('S'),
@@ -215,7 +222,7 @@ fn events(equations: &Equations, orbit: &Orbit, away: &[Interval]) -> Vec<Proven
     orbit.nodes.iter().zip(away.chunks(FREE)).map(at).collect()
 }
 
-/// Real part and imaginary part.
+/// Real and imaginary part.
 type Complex = [Taylor; 2];
 
 fn times([a, b]: Complex, [c, d]: Complex) -> Complex {
@@ -227,7 +234,7 @@ fn square([a, b]: Complex) -> Taylor {
     a * a + b * b
 }
 
-/// Proves of each frequency of a piece of a band that the damper has a steady motion that touches no wall, or that there is none.
+/// Proves, for every frequency of a piece of a band, the steady motion of a damper that touches no wall or has none.
 ///
 /// # Errors
 /// It may touch a wall, or the system may not come to rest without force.
@@ -239,12 +246,14 @@ pub fn prove_steady(scene: &Scene, omega: [f64; 2]) -> Result<Theorem, Failure> 
     steady(&equations.at(Taylor::line(middle, half)))
 }
 
-/// The motion that touches no wall, of a system that comes to rest without force, at one frequency or at each of a family: no other one repeats.
+/// The steady motion without contact of a system that comes to rest without force, at one frequency or each of a family; no other one is
+/// periodic.
 ///
 /// # Errors
 /// It may touch a wall.
 fn steady(equations: &Equations) -> Result<Theorem, Failure> {
-    let [[m1, c1, k1], [m2, c2, k2]] = [equations.primary, equations.damper].map(|own| own.map(Taylor::from));
+    let [[m1, c1, k1], [m2, c2, k2]] =
+        [equations.primary, equations.damper].map(|body| body.map(Taylor::from));
     let omega = equations.omega;
     let inertia = m2 * omega * omega;
     let (structure, spring) = ([k1 - m1 * omega * omega, omega * c1], [k2, omega * c2]);
@@ -256,10 +265,10 @@ fn steady(equations: &Equations) -> Result<Theorem, Failure> {
     let scale = times([cos, -sin], [re, -im]).map(|part| part * square([re, im]).reciprocal());
     let (x1, r) = (times(scale, dynamic), scale.map(|part| part * inertia));
 
-    // Both parts of (m1 v1² + k1 x1²)/2 are turns of one another, so the larger wins.
+    // Each part of (m1 v1² + k1 x1²)/2 is largest where the other is zero, so the larger one decides.
     let half = Taylor::point(0.5) * square(x1);
     let energy = (half * k1).hull().max((half * m1 * omega * omega).hull());
-    // It is not negative, whatever is rounded.
+    // `abs` removes negative values due to rounding.
     let stroke = square(r).hull().abs().sqrt();
     for side in Side::BOTH.into_iter().filter(|_| equations.has_walls()) {
         let gap = Interval::point(side.sign()) * (equations.walls[side as usize] - equations.rest);
@@ -280,20 +289,25 @@ fn steady(equations: &Equations) -> Result<Theorem, Failure> {
     })
 }
 
-/// What all multipliers are below: `e^{-σT}` if all roots of `N`, as a polynomial in `s = iω`, are left of `-σ`, which those of `N(s - σ)` left of zero show.
+/// A bound on all multipliers: `e^{-σT}` if all roots of `N`, as a polynomial in `s = iω`, are left of `-σ`, that is, those of `N(s - σ)`
+/// left of zero.
 fn multipliers(equations: &Equations) -> f64 {
     let [[m1, c1, k1], [m2, c2, k2]] = [equations.primary, equations.damper];
     let all =
         [m1 * m2, m1 * c2 + m2 * (c1 + c2), m1 * k2 + m2 * (k1 + k2) + c1 * c2, c1 * k2 + k1 * c2, k1 * k2];
-    // That of a structure alone, times the spring of its damper.
-    let own = if m2 == Interval::ZERO { &all[2..] } else { &all };
-    // A rate with which motions are proven to come to rest, zero without more ado, and one with which they are not.
-    let (mut rate, mut beyond) = (0.0, (own[1] / own[0]).hi());
+    // For a structure alone the polynomial is that of the structure, times the spring of its damper.
+    let polynomial = if m2 == Interval::ZERO { &all[2..] } else { &all };
+    // A proven decay rate, trivially zero at first, and one that is not reached.
+    let (mut rate, mut beyond) = (0.0, (polynomial[1] / polynomial[0]).hi());
     for _ in 0..HALVINGS {
         let middle = 0.5 * (rate + beyond);
-        if are_left(&shifted(own, Interval::point(middle))) { rate = middle } else { beyond = middle }
+        if has_left_roots(&shifted(polynomial, Interval::point(middle))) {
+            rate = middle
+        } else {
+            beyond = middle
+        }
     }
-    // The terms of e^x for x above zero are positive, so those that are kept are below it.
+    // For x >= 0 all terms of e^x are positive, so the partial sum is a lower bound.
     let x = (Interval::point(2.0 * rate) * pi() / equations.omega.hull()).abs();
     let exponential = |sum, k| Interval::ONE + sum * x / Interval::point(f64::from(k));
     (Interval::ONE / (1..TERMS).rev().fold(Interval::ONE, exponential)).hi().min(1.0)
@@ -308,12 +322,13 @@ fn shifted(p: &[Interval], sigma: Interval) -> Vec<Interval> {
     all
 }
 
-/// Whether all roots of a polynomial are left of zero: a step of Routh's scheme takes one off that is (E. J. Routh, 1877).
-fn are_left(p: &[Interval]) -> bool {
+/// Whether all roots of a polynomial are proven left of zero: each step of Routh's scheme removes one root left of zero (E. J. Routh,
+/// 1877).
+fn has_left_roots(p: &[Interval]) -> bool {
     let [first, second, ..] = *p else { return true };
     let ratio = first / second;
     let next = |k: usize| if k % 2 == 1 && k + 2 < p.len() { p[k + 1] - ratio * p[k + 2] } else { p[k + 1] };
-    let is_next = || are_left(&(0..p.len() - 1).map(next).collect::<Vec<_>>());
+    let is_next = || has_left_roots(&(0..p.len() - 1).map(next).collect::<Vec<_>>());
     first.is_positive() && second.is_positive() && is_next()
 }
 
@@ -334,7 +349,7 @@ mod tests {
             let rest = ([0.0, 0.0, equations.rest.mid(), 0.0], 1);
             let guess = Orbit::guess(&equations, rest, true).expect("a guess");
             let guess = guess.improved(&equations).expect("a motion");
-            let general = of_orbit(&equations, &guess, &ONE).expect("a proof");
+            let general = prove_orbit(&equations, &guess, &ONE).expect("a proof");
             let closed = steady(&equations).expect("a gap");
             for (wide, narrow) in general.events[0].state.into_iter().zip(closed.events[0].state) {
                 assert!(wide.meet(narrow).is_some() && narrow.width() < 1e-13, "{wide} {narrow}");
@@ -348,7 +363,8 @@ mod tests {
         }
     }
 
-    /// The motions at the ends of a piece are in the boxes about its family, which are much smaller than the way between these motions.
+    /// The motions at the ends of a piece are in the boxes about its family, which are much smaller than the distance between these
+    /// motions.
     #[test]
     fn invariant_the_boxes_of_a_family_hold_its_motions() {
         let text = r#"{
@@ -362,8 +378,8 @@ mod tests {
         let single = equations.at(Taylor::point(omega));
         let guess = Orbit::guess(&single, ([-0.0282, 0.608, 0.183, -1.121], 1), false).expect("a guess");
         let wide = equations.at(Taylor::line(omega, half));
-        let closed = guess.improved(&single).and_then(|own| own.orbit.widened(&wide)).expect("a family");
-        let [_, boxes] = alone(&wide, &closed, &MANY).expect("a proof");
+        let closed = guess.improved(&single).and_then(|one| one.orbit.widened(&wide)).expect("a family");
+        let [_, boxes] = unique_box(&wide, &closed, &MANY).expect("a proof");
         for end in [-1.0, 1.0] {
             let there = equations.at(Taylor::point(omega + half * end));
             let own =

@@ -1,4 +1,4 @@
-//! What runs settle on at one value of the parameter.
+//! The motions that runs settle on at one value of the parameter.
 
 use super::orbit::Orbit;
 use super::seen::Seen;
@@ -16,7 +16,7 @@ pub struct Attractor {
     pub orbit: Orbit,
     /// How many starts end on it.
     pub starts: usize,
-    /// Whether the run from rest does.
+    /// Whether the run from rest ends on it.
     pub from_rest: bool,
 }
 
@@ -25,15 +25,16 @@ pub struct Attractor {
 pub struct Sample {
     /// The value.
     pub value: f64,
-    /// The number of the start among those over the whole range, if it is one of these; else runs from rest and other starts are at this value.
+    /// The number of the start, if it is one of those over the whole range; none if runs from rest and other starts were made at this
+    /// value.
     pub number: Option<usize>,
     /// The periodic motions, the most frequent first.
     pub attractors: Vec<Attractor>,
-    /// What the runs reach that settled on none; the first one that from rest, if it did not.
+    /// The largest values of runs that did not settle; that from rest first, if it is one of them.
     pub irregular: Vec<Seen>,
-    /// Whether the run from rest settled on none.
+    /// Whether the run from rest did not settle.
     pub rest_is_irregular: bool,
-    /// Number of starts, that from rest among them.
+    /// Number of starts, including that from rest.
     pub starts: usize,
 }
 
@@ -46,7 +47,7 @@ pub(super) struct End {
     from_rest: bool,
     /// The number of its branch, once it is known.
     pub branch: Option<usize>,
-    /// Whether its branch was followed; if it is on none then, it could not be.
+    /// Whether following its branch was tried; `branch` is still none if that failed.
     followed: bool,
 }
 
@@ -62,7 +63,7 @@ pub(super) struct Reached {
 }
 
 impl Reached {
-    fn nothing(value: f64, number: Option<usize>) -> Self {
+    fn empty(value: f64, number: Option<usize>) -> Self {
         Self {
             value,
             number,
@@ -73,7 +74,7 @@ impl Reached {
         }
     }
 
-    /// Adds what a run settles on.
+    /// Follows a run and adds the motion that it settles on.
     fn follow(&mut self, shooting: &Shooting, y: [f64; 4], from_rest: bool) -> Result<(), Error> {
         self.starts += 1;
         match settle(shooting, self.value, y)? {
@@ -110,12 +111,12 @@ impl Reached {
         periodic.chain(self.irregular.iter().map(|seen| seen.largest(measure))).fold(0.0, f64::max)
     }
 
-    /// Whether a periodic motion is such a one.
-    pub(super) fn is_any(&self, shooting: &Shooting, such: impl Fn(&Shooting, &Solution) -> bool) -> bool {
-        self.attractors.iter().any(|one| such(&shooting.of_periods(one.periods), &one.motion))
+    /// Whether `predicate` holds for any of the periodic motions.
+    pub(super) fn any(&self, shooting: &Shooting, predicate: impl Fn(&Shooting, &Solution) -> bool) -> bool {
+        self.attractors.iter().any(|one| predicate(&shooting.of_periods(one.periods), &one.motion))
     }
 
-    /// Looks for the branches of those motions whose branch is not known.
+    /// Sets the branch of each motion whose branch is not known yet, where `branch` finds it.
     pub(super) fn find(
         &mut self,
         shooting: &Shooting,
@@ -126,7 +127,7 @@ impl Reached {
         }
     }
 
-    /// The next of these motions whose branch is to be followed; each comes once.
+    /// The next motion whose branch is to be followed; each is returned once.
     pub(super) fn next(&mut self, follows: impl Fn(&Orbit) -> bool) -> Option<&mut End> {
         let is_next = |one: &&mut End| one.branch.is_none() && !one.followed && follows(&one.orbit);
         let one = self.attractors.iter_mut().find(is_next)?;
@@ -134,7 +135,7 @@ impl Reached {
         Some(one)
     }
 
-    /// As a sample.
+    /// Converts to a sample.
     pub(super) fn sample(self) -> Sample {
         let Self { value, number, irregular, rest_is_irregular, starts, .. } = self;
         let known =
@@ -145,7 +146,7 @@ impl Reached {
     }
 }
 
-/// From rest and so many other starts, as long as it goes on.
+/// Runs from rest and from `count` other starts, as long as `proceed` is true.
 ///
 /// # Errors
 /// A scene cannot be run.
@@ -157,7 +158,7 @@ pub(super) fn attractors_at(
 ) -> Result<Reached, Error> {
     let system = shooting.system(value)?;
     let all = [system.rest()].into_iter().chain((0..count).map(|number| starts.state(number, &system)));
-    let mut seen = Reached::nothing(value, None);
+    let mut seen = Reached::empty(value, None);
     for (number, y) in all.enumerate() {
         if !proceed() {
             break;
@@ -167,7 +168,7 @@ pub(super) fn attractors_at(
     Ok(seen)
 }
 
-/// From one of the starts over the range, if it goes on.
+/// The run from one of the starts over the range, if `proceed` is true.
 ///
 /// # Errors
 /// A scene cannot be run.
@@ -178,7 +179,7 @@ pub(super) fn attractors_from(
     proceed: &dyn Fn() -> bool,
 ) -> Result<Reached, Error> {
     let value = starts.value(number);
-    let mut seen = Reached::nothing(value, Some(number));
+    let mut seen = Reached::empty(value, Some(number));
     if proceed() {
         seen.follow(shooting, starts.state(number, &shooting.system(value)?), false)?;
     }

@@ -1,7 +1,7 @@
-//! A picture of basins: on which motion each start in a plane of first states settles.
+//! A map of basins: the motion on which each start in a plane of initial states settles.
 //!
-//! At a crest of the force the structure is anywhere that the force can bring it, the damper at rest in it. A run is followed until it is as near to a
-//! motion that is known as [`settle`](super::settle::settle) asks a run to be to its own.
+//! The starts are at a crest of the force, with the structure in any state that the force can bring it to and the damper at rest in it. A
+//! run is followed until it is as near to a known motion as [`settle`](super::settle::settle) requires of a repetition.
 
 use super::attractors::Sample;
 use super::branches::{Branches, Plan, equations, sample};
@@ -14,7 +14,7 @@ use retune_model::{Coupled, Scene};
 use retune_solver::observe::Unobserved;
 use retune_solver::{Motion, Phase, Settings};
 
-/// Starts to a side of the plane; odd, so that the one in the middle is at rest.
+/// Number of starts along a side of the plane; odd, so that the one in the middle is at rest.
 pub const SIDE: usize = 81;
 
 /// The basins at one value of a parameter.
@@ -24,7 +24,7 @@ pub struct Basins {
     pub sample: Sample,
     /// The starts: `x1` (m) and `v1` (m/s).
     pub sides: [Vec<f64>; 2],
-    /// The number of the motion among those of the sample that each start ends on, `x1` varying fastest; none if on no such motion.
+    /// The index of the sample's motion that each start ends on, `x1` varying fastest; none if it ends on none of them.
     pub ends: Vec<Option<usize>>,
 }
 
@@ -40,7 +40,7 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// Looks for the motions of a scene at a value of the parameter, and for their branches among those that are known.
+    /// Finds the motions of a scene at a value of the parameter, and their branches among `known` ones.
     ///
     /// # Errors
     /// The scene cannot be run there.
@@ -63,7 +63,7 @@ impl Plane {
         Ok(Self { sample, reach, scene, system: coupled(&scene)?, settings: *shooting.settings() })
     }
 
-    /// The number of the motion that a run ends on, from `x1` (m) and `v1` (m/s) of the structure with the damper at rest in it.
+    /// The index of the motion that a run ends on, from `x1` (m) and `v1` (m/s) of the structure with the damper at rest in it.
     ///
     /// # Errors
     /// The run cannot be finished.

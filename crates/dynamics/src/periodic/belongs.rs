@@ -8,10 +8,10 @@ use super::trace::trace;
 use nalgebra::DVector;
 use std::ops::Range;
 
-/// A branch as far as this from a motion is not tried, in units of the motion's size.
+/// A branch farther than this from a motion is not tried, in units of the motion's size.
 const FAR: f64 = 0.3;
-/// One as near as this is followed to the motions of the branch next to it, where Newton's iteration does not reach it: beside a grazing at a
-/// nearly hard wall it converges only from very near.
+/// If Newton's iteration fails for a branch nearer than this, the motion is continued to the adjacent points of the branch: beside a
+/// grazing at a nearly hard wall the iteration converges only from very near.
 const CLOSE: f64 = 1e-2;
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
@@ -21,7 +21,7 @@ impl Branches {
         self.holds_among(shooting, motion, 0..self.branches.len())
     }
 
-    /// The same among some branches.
+    /// [`Self::holds`] among some branches.
     pub(super) fn holds_among(
         &self,
         shooting: &Shooting,
@@ -32,33 +32,34 @@ impl Branches {
         let is_here = |(_, pair, guess): &(usize, &[Orbit], DVector<f64>)| {
             let gap = shooting.nearest(guess, &motion.x).1;
             gap < FAR
-                && (shooting.correct_at_value(guess).is_some_and(|own| is_same(shooting, &own, motion))
+                && (shooting.correct_at_value(guess).is_some_and(|found| is_same(shooting, &found, motion))
                     || gap < CLOSE && leads_to(shooting, motion, pair))
         };
         self.near(shooting, value, numbers).find(is_here).map(|(number, ..)| number)
     }
 
-    /// The motions of as many periods on all branches at a value.
+    /// The motions on all branches of as many periods at a value.
     pub(super) fn at(&self, shooting: &Shooting, value: f64) -> Vec<Solution> {
         self.near(shooting, value, 0..self.branches.len())
             .filter_map(|(.., guess)| shooting.correct_at_value(&guess))
             .collect()
     }
 
-    /// The places at which branches of as many periods pass a value: their numbers, the motions on either side, and that between them.
+    /// Where branches of as many periods pass a value: the branch's number, the points on either side, and the unknowns interpolated
+    /// between them.
     fn near<'a>(
         &'a self,
         shooting: &'a Shooting,
         value: f64,
         numbers: Range<usize>,
     ) -> impl Iterator<Item = (usize, &'a [Orbit], DVector<f64>)> + 'a {
-        let own = numbers.map(|number| (number, &self.branches[number]));
+        let branches = numbers.map(|number| (number, &self.branches[number]));
         // At an end of the range a value may be off by the rounding of its unknown.
         let off = move |orbit: &Orbit| {
             let off = orbit.value - value;
             if off.abs() <= ROUNDING * value.abs() { 0.0 } else { off }
         };
-        own.filter(|(_, branch)| branch.shooting.periods == shooting.periods).flat_map(
+        branches.filter(|(_, branch)| branch.shooting.periods == shooting.periods).flat_map(
             move |(number, branch)| {
                 let around = move |pair: &&[Orbit]| off(&pair[0]) * off(&pair[1]) <= 0.0;
                 branch.points.windows(2).filter(around).map(move |pair| {
@@ -72,11 +73,11 @@ impl Branches {
     }
 }
 
-/// Whether the branch through a motion leads to one of two others on either side of it.
+/// Whether the branch through a motion leads to one of the two points of `pair`, one on either side of it.
 fn leads_to(shooting: &Shooting, motion: &Solution, pair: &[Orbit]) -> bool {
     let [a, b] = [pair[0].value, pair[1].value];
-    let Some(own) = trace(shooting, motion, [a.min(b), a.max(b)], &|| true) else { return false };
-    let ends = [own.points.first(), own.points.last()].into_iter().flatten();
+    let Some(branch) = trace(shooting, motion, [a.min(b), a.max(b)], &|| true) else { return false };
+    let ends = [branch.points.first(), branch.points.last()].into_iter().flatten();
     let unknowns = |orbit: &Orbit| shooting.unknowns(&orbit.states, orbit.value);
     let is_met = |end: &Orbit| {
         pair.iter().any(|orbit| {

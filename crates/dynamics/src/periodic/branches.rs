@@ -1,4 +1,4 @@
-//! All branches that runs lead to: attractors at samples of a parameter, the branches through them, and those that branch off.
+//! All branches that runs lead to: attractors at samples of a parameter, the branches through them, and those that bifurcate from these.
 
 use super::attractors::{Reached, Sample, attractors_at, attractors_from};
 use super::events::Event;
@@ -13,18 +13,18 @@ use retune_model::{Measure, Parameter, Scene};
 use retune_solver::Settings;
 use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
 
-/// How far apart runs are started in the gaps without a stable motion, again and again, as shares of the range; with this share of the
-/// starts, for runs that do not settle take longest.
+/// Spacings of the runs in gaps without a stable motion, one for each pass, as shares of the range; and the divisor for the number of their
+/// starts, since runs that do not settle take longest.
 pub const SPACINGS: [f64; 2] = [1.0 / 200.0, 1.0 / 400.0];
 const FEWER: usize = 4;
-/// Most periods of motions that Newton's iteration looks for.
+/// Most periods of the motions that deflated Newton's iteration looks for.
 const APART: usize = 2;
-/// The narrowest gap that is looked into, as a share of the range.
+/// The narrowest gap that is searched, as a share of the range.
 const NARROW: f64 = 2e-4;
 /// Most branches.
 const MOST_BRANCHES: usize = 200;
 
-/// What is asked for.
+/// What to search for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plan {
     /// The parameter.
@@ -35,20 +35,20 @@ pub struct Plan {
     pub samples: usize,
     /// Other starts for each: one set over the whole range and the states that the force can reach.
     pub starts: usize,
-    /// Runs at each sample from whose states Newton's iteration is led to motions of one and two periods other than those known.
+    /// Runs at each sample from whose states deflated Newton's iteration looks for new motions of one and two periods.
     pub apart: usize,
-    /// Number of values at which one run more is started, from rest, once the branches through the samples are known.
+    /// Number of values at which one more run is started from rest once the branches through the samples are known.
     pub fine: usize,
-    /// How often the gaps without a stable motion are looked into, more closely each time: at most as often as [`SPACINGS`] says.
+    /// Number of passes over the gaps without a stable motion, each finer than the last: at most one for each of [`SPACINGS`].
     pub passes: usize,
-    /// Only motions with as much of a measure are followed along the parameter; the others count where runs meet them.
+    /// Only motions with at least this value of a measure are followed along the parameter; the others count where runs meet them.
     pub least: Option<(Measure, f64)>,
-    /// A branch is followed about its largest value of a measure alone, and none that branches off: enough for that value.
+    /// Follow branches only about their largest value of this measure, and none that bifurcate: enough to find that value.
     pub crests: Option<Measure>,
 }
 
 impl Plan {
-    /// A plan without samples and without whatever is looked for beside them.
+    /// A plan without samples or any further search.
     pub const fn over(parameter: Parameter, range: [f64; 2]) -> Self {
         Self {
             parameter,
@@ -63,7 +63,7 @@ impl Plan {
         }
     }
 
-    /// Starts over the whole range, beside those from rest.
+    /// Number of starts over the whole range, besides those from rest.
     pub const fn others(&self) -> usize {
         self.samples * self.starts
     }
@@ -73,7 +73,7 @@ impl Plan {
         self.least.is_none_or(|(measure, least)| orbit.seen.largest(measure) >= least)
     }
 
-    /// Starts at a value where runs are started beside the samples.
+    /// Number of starts at a value between the samples.
     pub(super) const fn fewer_starts(&self) -> usize {
         self.starts.div_ceil(FEWER)
     }
@@ -88,16 +88,16 @@ pub struct Branches {
     pub branches: Vec<Branch>,
     /// The samples, in the order of their values.
     pub samples: Vec<Sample>,
-    /// Whether the search was ended before it had found all it could, by who asked for it or after the most branches.
+    /// Whether the search ended early, by [`Control::proceed`] or after the most branches.
     pub ended: bool,
 }
 
-/// Who follows a search, and may end it.
+/// Callbacks that report the progress of a search and may end it.
 #[derive(Clone, Copy)]
 pub struct Control<'a> {
     /// Called after each run from rest at a sample of the plan.
     pub done: &'a (dyn Fn() + Sync),
-    /// Asked before each run and each motion of a branch: once it is false, no more are made.
+    /// Called before each run and each motion of a branch; once it returns false, the search ends.
     pub proceed: &'a (dyn Fn() -> bool + Sync),
 }
 
@@ -110,8 +110,8 @@ impl Default for Control<'_> {
 /// A range of the parameter.
 pub type Interval = [f64; 2];
 
-/// Finds the branches of a scene along a parameter. Where no stable motion is found, more samples are taken. At one value, without a range, the
-/// motions are found, and no branches.
+/// Finds the branches of a scene along a parameter. Where no stable motion is found, more samples are taken. For a range of one value only
+/// the motions are found.
 ///
 /// # Errors
 /// A scene in the range cannot be run.
@@ -180,8 +180,8 @@ pub fn equations(scene: &Scene, plan: &Plan, settings: &Settings) -> Result<Shoo
     Ok(Shooting::new(middle, plan.parameter, 1, (span, size), settings))
 }
 
-/// What runs settle on at a value of the parameter, without the branches: from rest and other starts there, or from the start of this number
-/// among those over the range.
+/// The motions that runs settle on at a value of the parameter, without the branches: from rest and other starts there, or from start
+/// `number` of those over the range.
 ///
 /// # Errors
 /// A scene cannot be run.
@@ -202,7 +202,7 @@ pub fn sample(
 }
 
 impl Branches {
-    /// Adds what runs have reached, with the branches through it that are new.
+    /// Adds what runs have reached, and follows the new branches through it.
     pub(super) fn add(
         &mut self,
         shooting: &Shooting,
@@ -212,7 +212,7 @@ impl Branches {
         let mut seen: Vec<Reached> = seen.into_iter().filter(|seen| seen.starts > 0).collect();
         let mut known = 0;
         loop {
-            // Only of branches that are new since the last round: each motion is held against each branch once.
+            // Only among branches that are new since the last round: each motion is compared with each branch once.
             let all = self.branches.len();
             seen.par_iter_mut().for_each(|seen| {
                 seen.find(shooting, |own, motion| self.holds_among(own, motion, known..all));
@@ -227,7 +227,7 @@ impl Branches {
         self.samples.extend(seen.into_iter().map(Reached::sample));
     }
 
-    /// Values in the gaps without a stable motion, at most `spacing` of the range apart, beside those that have been looked at.
+    /// Values in the gaps without a stable motion, at most `spacing` of the range apart, away from the samples.
     fn unseen(&self, spacing: f64) -> Vec<f64> {
         let [from, to] = self.plan.range;
         let near = spacing * (to - from);
@@ -242,7 +242,7 @@ impl Branches {
             .collect()
     }
 
-    /// Follows the branch through a motion and those that branch off where it gains or loses stability; gives its number.
+    /// Follows the branch through a motion and those that bifurcate where it gains or loses stability; returns its number.
     pub(super) fn follow(
         &mut self,
         shooting: &Shooting,

@@ -1,19 +1,19 @@
 //! Other motions at the same value of the parameter, by deflation (P. E. Farrell, Á. Birkisson and S. W. Funke, SIAM J. Sci. Comput. 37
-//! (2015) A2026): Newton's iteration on the gaps times `Π (1/|x - x_k|² + 1)`, which keeps away from the motions `x_k` that are known, from
-//! whatever crest of the force they begin.
+//! (2015) A2026): Newton's iteration on the gaps times `Π (1/|x - x_k|² + 1)`, which is repelled by the known motions `x_k`, whatever crest
+//! of the force they begin at.
 
 use super::forced::Forced;
 use super::settle::{SAME, least_periods};
 use super::shooting::{Shooting, Solution};
 use nalgebra::DVector;
 
-/// Most of its iterations.
+/// Most iterations.
 const ITERATIONS: usize = 40;
 /// The longest change of an iteration, in units of the motion's size.
 const LONGEST: f64 = 0.5;
-/// A change as short as this is left to Newton's iteration alone.
+/// After a change shorter than this, plain Newton's iteration takes over.
 const SHORT: f64 = 1e-2;
-/// Farther away than this, in the same units, there is nothing to find.
+/// The iteration gives up farther than this from its start, in the same units.
 const FAR: f64 = 10.0;
 
 /// A motion at the value of the parameter in `start` other than the `known`; none if the iteration does not lead to one.
@@ -23,7 +23,7 @@ pub fn another<S: Forced>(
     known: &[DVector<f64>],
 ) -> Option<Solution> {
     let known: Vec<DVector<f64>> =
-        shooting.crests().flat_map(|shift| known.iter().map(move |x| shooting.moved_on(x, shift))).collect();
+        shooting.crests().flat_map(|shift| known.iter().map(move |x| shooting.shifted(x, shift))).collect();
     let mut x = start.clone();
     for _ in 0..ITERATIONS {
         let change = shooting.change_at_value(&x)?;

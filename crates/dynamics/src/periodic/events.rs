@@ -1,4 +1,4 @@
-//! What happens along a branch: folds, crossings, period doublings, Neimark–Sacker bifurcations, grazings; each located between two motions.
+//! Events along a branch: folds, crossings, period doublings, Neimark–Sacker bifurcations, grazings; each located between two motions.
 
 use super::forced::Forced;
 use super::node::{Node, between, pairs};
@@ -6,18 +6,18 @@ use super::orbit::Orbit;
 use super::shooting::{Linearised, Shooting};
 use nalgebra::Complex;
 
-/// Most evaluations for the place of one event.
+/// Most evaluations to locate one event.
 const EVALUATIONS: usize = 80;
 /// An event is located to this share of the parameter's value, and of the step in which it lies.
 const PLACED: f64 = 1e-10;
 /// Most grazings in one step.
 const GRAZINGS: usize = 6;
-/// What is left, as a share of the step, of a difference that goes to zero as its ends come together. Where more is left, it jumps.
+/// Bound on the remaining difference, as a share of that over the step, of a quantity that is continuous. Where more is left, it jumps.
 const CONTINUOUS: f64 = 1e-3;
 /// A difference of motions below this is that of their solutions.
 const ROUNDED: f64 = 1e-10;
 
-/// Why a branch was followed no farther.
+/// Why the tracing of a branch ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// The parameter left its range.
@@ -26,11 +26,11 @@ pub enum End {
     Closed,
     /// It has joined the branch of half its period, at a period doubling.
     Halved,
-    /// After the most steps, or the most unstable motions in a row.
+    /// After the most steps, or the most consecutive unstable motions.
     Steps,
     /// No solution was found a shortest step ahead.
     Lost,
-    /// Whoever watches ended the search.
+    /// The caller ended the search.
     Ended,
 }
 
@@ -55,9 +55,10 @@ impl End {
 pub enum EventKind {
     /// The branch turns back: a multiplier is 1.
     Fold,
-    /// Another branch of motions of as many periods crosses, as that of motions without symmetry does: a multiplier is 1, and the branch goes on.
+    /// Another branch of motions of as many periods crosses, such as one of motions without symmetry: a multiplier is 1, and the branch
+    /// continues.
     BranchPoint,
-    /// A motion of twice the period branches off: a multiplier is -1.
+    /// A branch of twice the period begins: a multiplier is -1.
     PeriodDoubling,
     /// A pair of complex multipliers is on the unit circle: amplitude-modulated motions branch off.
     NeimarkSacker,
@@ -100,15 +101,15 @@ pub struct Event {
     pub orbit: Orbit,
     /// The equations there.
     pub at: Linearised,
-    /// The place of that motion on its branch.
+    /// The index of that motion among the branch's points.
     pub place: usize,
 }
 
-/// The events between two motions, in their order; none if the motions between them are not one branch, or if multipliers cross the unit circle
-/// at none of them. At a wall that is nearly hard many branches come close together at a grazing, and turn back within a part of a step.
+/// The events between two motions, in order; none if the motions between them are not one branch, or if multipliers cross the unit circle
+/// without an event. At a nearly hard wall many branches come close together at a grazing, and turn back within a part of a step.
 pub(super) fn located(shooting: &Shooting<impl Forced>, now: &Node, next: &Node) -> Option<Vec<Event>> {
     let mut found: Vec<(f64, Event)> = Vec::new();
-    // A grazing has no test: the impacts tell.
+    // A grazing has no test function: the impacts change.
     for (number, kind) in EventKind::ALL.into_iter().enumerate().take(now.tests.len()) {
         let ends = [now.tests[number], next.tests[number]];
         if ends[0] * ends[1] < 0.0 {
@@ -118,7 +119,7 @@ pub(super) fn located(shooting: &Shooting<impl Forced>, now: &Node, next: &Node)
             }
         }
     }
-    if !now.is_told(next, found.iter().map(|(_, event)| event.kind.multipliers())) {
+    if !now.crossings_match(next, found.iter().map(|(_, event)| event.kind.multipliers())) {
         return None;
     }
     let mut last = (0.0, now.clone());
@@ -146,8 +147,8 @@ fn is_complex(orbit: &Orbit) -> bool {
     pairs(orbit).min_by(|a, b| off(a).total_cmp(&off(b))).is_some_and(|[a, b]| a.im != 0.0 && b == a.conj())
 }
 
-/// The place at which a test changes sign, and the motion there (Illinois: regula falsi that halves the value of an end that
-/// stays); none if the test jumps.
+/// Where a test function changes sign, and the motion there (Illinois: regula falsi that halves the value of an end that
+/// stays); none if it jumps.
 fn root(
     shooting: &Shooting<impl Forced>,
     ends: [&Node; 2],
@@ -175,7 +176,7 @@ fn root(
     best
 }
 
-/// The first place after `low` at which the impacts are others, and the motion beyond it; none if the motion jumps there.
+/// The first change of the impacts after `low`, and the motion beyond it; none if the motion jumps there.
 fn change(shooting: &Shooting<impl Forced>, ends: [&Node; 2], mut low: (f64, Node)) -> Option<(f64, Node)> {
     let label = low.1.orbit.seen.impacts.clone();
     let mut high = (1.0, ends[1].clone());

@@ -1,4 +1,4 @@
-//! What continuation asks of a system, and the answers for a structure with a damper.
+//! The interface between continuation and a system, implemented for a structure with a damper.
 
 use super::seen::{Seen, seen};
 use crate::parameter::Error;
@@ -12,10 +12,11 @@ use std::f64::consts::TAU;
 /// Largest tolerance of the contacts.
 const TOLERANCE: f64 = 1e-10;
 
-/// A system under a periodic force whose state is four numbers, along one parameter. [`Damped`] is what Retune is for; a test follows
+/// A system under a periodic force, with four state variables, along one parameter. [`Damped`] is Retune's; a test follows
 /// Duffing's oscillator, whose folds are known.
 pub trait Forced: Clone {
-    /// The flow over each of equal segments of so many periods of the force, from the state at its beginning, at a value of the parameter.
+    /// The flow over each of the equal segments of `periods` periods of the force, from the state at its beginning, at a value of the
+    /// parameter.
     ///
     /// # Errors
     /// The system cannot be run there.
@@ -28,7 +29,7 @@ pub trait Forced: Clone {
     fn seen(&self, value: f64, periods: usize, states: &[[f64; 4]]) -> Result<Seen, Error>;
 }
 
-/// Where a segment leads to.
+/// The end of a segment and its derivatives.
 #[derive(Clone, Debug)]
 pub struct Flow {
     /// The state at its end.
@@ -46,11 +47,11 @@ pub struct Damped {
     pub scene: Scene,
     /// The parameter.
     pub parameter: Parameter,
-    /// How its segments are run.
+    /// The settings of the segments' runs.
     pub settings: Settings,
 }
 
-/// The settings of the segments, of those of a study.
+/// The settings for segments, derived from those of a study.
 pub fn settings_of(settings: &Settings) -> Settings {
     Settings { rtol: settings.rtol.min(TOLERANCE), ..*settings }
 }

@@ -1,4 +1,4 @@
-//! Motions that are known for one damper, followed to dampers like it: what a search looks at beside runs from rest.
+//! Motions known for one damper, continued to similar dampers: a search evaluates them besides runs from rest.
 
 use super::branches::{Branches, Control, Plan, branches, equations};
 use super::largest::COUNTS;
@@ -9,11 +9,11 @@ use crate::parameter::Error;
 use retune_model::{Measure, Parameter, Scene};
 use retune_solver::Settings;
 
-/// Steps of the way to another damper, where fewer do not lead there.
+/// Numbers of steps on the way to another damper, tried in turn.
 const STEPS: [usize; 3] = [1, 4, 16];
 
 /// The branches of a scene along ω about their largest values of a measure: those that runs from rest at the samples of a plan lead to, and
-/// those that motions of another damper become.
+/// those through `known` motions of another damper, continued to this one.
 ///
 /// # Errors
 /// A scene in the range cannot be run.
@@ -38,7 +38,7 @@ pub fn from_rest_and(
 }
 
 impl Branches {
-    /// Motions of all branches of a scene that are worth to be followed to other dampers, by a measure.
+    /// Motions of all branches of a scene with values of a measure large enough to continue them to other dampers.
     ///
     /// # Errors
     /// A value of the range is out of the parameter's.
@@ -67,7 +67,7 @@ fn moved(own: &Shooting, seed: &Seed, scene: &Scene) -> Option<Solution> {
     STEPS.iter().find_map(arrived)
 }
 
-/// A scene with the damper at a share of the way from that of another.
+/// The scene `to` with a damper at a share of the way from that of `from`.
 fn between(from: &Scene, to: &Scene, share: f64) -> Option<Scene> {
     let (own, mut damper) = (from.damper?, to.damper?);
     for parameter in Parameter::VARIED {

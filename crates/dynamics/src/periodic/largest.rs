@@ -1,5 +1,5 @@
-//! The largest value of a quantity over the stable motions of a branch, located between its points; and the part of a branch about it alone, for
-//! searches, which ask for it at one design after another.
+//! The largest value of a quantity over the stable motions of a branch, located between its points; and, for searches, which need it at
+//! many designs, the part of a branch about that value alone.
 
 use super::attractors::Reached;
 use super::orbit::Orbit;
@@ -8,7 +8,7 @@ use super::trace::{Branch, trace_while};
 use retune_model::Measure;
 use std::cell::Cell;
 
-/// Motions that are looked at for the largest value have this share of the largest that is known.
+/// Motions below this share of the largest known value are ignored.
 pub(super) const COUNTS: f64 = 0.8;
 /// A crest ends where the quantity is below this share of its largest value.
 const DOWN: f64 = 0.995;
@@ -16,7 +16,7 @@ const DOWN: f64 = 0.995;
 const CLOSE: f64 = 0.02;
 /// Most evaluations to locate a maximum.
 const EVALUATIONS: usize = 40;
-/// Less than this share is no gain.
+/// A smaller relative gain is none.
 const NOTHING: f64 = 1e-14;
 
 /// The motion with the largest value of a quantity among the stable ones of a branch, located between the points of the branch.
@@ -26,7 +26,7 @@ pub fn largest(branch: &Branch, quantity: impl Fn(&Orbit) -> f64 + Copy) -> Opti
     let all = 0..branch.points.len();
     let most = all.clone().map(value).fold(f64::NEG_INFINITY, f64::max);
     let near = |&i: &usize| value(i) >= (1.0 - CLOSE) * most && stable(i).is_some();
-    // Of a level stretch, as a force of zero is, the first point.
+    // The first point of a level stretch, such as a force of zero.
     let peaks = all.filter(near).filter(|&i| (i == 0 || value(i - 1) < value(i)) && value(i + 1) <= value(i));
     let located = peaks.filter_map(|i| {
         let own = stable(i)?.clone();
@@ -37,15 +37,15 @@ pub fn largest(branch: &Branch, quantity: impl Fn(&Orbit) -> f64 + Copy) -> Opti
     located.max_by(|a, b| quantity(a).total_cmp(&quantity(b)))
 }
 
-/// The largest value between the neighbours of a point: parabolas through the three highest places, golden sections where these do not
-/// narrow it down; it ends where a parabola promises no more.
+/// The largest value between the neighbours of a point: by parabolas through the three highest points, or golden sections where these do
+/// not narrow the bracket, until a parabola predicts no gain.
 fn located(branch: &Branch, i: usize, quantity: impl Fn(&Orbit) -> f64) -> Option<Orbit> {
     let shooting = &branch.shooting;
     let x = |i: usize| shooting.unknowns(&branch.points[i].states, branch.points[i].value);
-    let (from, own, to) = (x(i - 1), x(i), x(i + 1));
+    let (from, middle, to) = (x(i - 1), x(i), x(i + 1));
     let way = &to - &from;
     let orbit = |share: f64| Orbit::of(shooting, &shooting.correct(&(&from + &way * share), &way)?).ok();
-    let share = shooting.inner(&(&own - &from), &way) / shooting.inner(&way, &way);
+    let share = shooting.inner(&(&middle - &from), &way) / shooting.inner(&way, &way);
     let [low, most, high] = [i - 1, i, i + 1].map(|i| quantity(&branch.points[i]));
     let (mut best, mut three) = (None, [(0.0, low), (share, most), (1.0, high)]);
     for _ in 0..EVALUATIONS {
@@ -70,8 +70,8 @@ fn located(branch: &Branch, i: usize, quantity: impl Fn(&Orbit) -> f64) -> Optio
     best
 }
 
-/// Where three values, the middle one the largest, promise the most, and how much more: at the vertex of their parabola, or, once one side is
-/// below a thousandth of both, in the golden section of the other.
+/// The next point to try for three values, the middle one the largest, and the predicted gain: the vertex of their parabola, or, once one
+/// side is below a thousandth of both, the golden section of the other.
 fn higher([(a, low), (b, most), (c, high)]: &[(f64, f64); 3]) -> (f64, f64) {
     let [left, right] = [(most - low) / (b - a), (high - most) / (c - b)];
     let curvature = (right - left) / (c - a);
@@ -111,7 +111,7 @@ pub(super) fn stable_ranges(branch: &Branch) -> Vec<[f64; 2]> {
     merged(stable_parts(branch).collect())
 }
 
-/// The part of the branch of a motion that leads up to the largest value of a quantity among stable motions, and a little beyond.
+/// The part of the branch through a motion that leads to the largest value of a quantity among stable motions, and a little beyond.
 pub(super) fn crest(
     shooting: &Shooting,
     seed: &Solution,
@@ -127,7 +127,7 @@ pub(super) fn crest(
     trace_while(shooting, seed, range, &proceed)
 }
 
-/// Keeps of samples in a row those at which runs reach as much as at both beside them; gives the largest value of all.
+/// Keeps the local maxima of consecutive samples; returns the largest value of all.
 pub(super) fn keep_crests(seen: &mut Vec<Reached>, measure: Measure) -> f64 {
     let reached: Vec<f64> = seen.iter().map(|seen| seen.most(measure)).collect();
     let at = |i: usize| reached.get(i).copied().unwrap_or(0.0);

@@ -1,4 +1,4 @@
-//! A motion on a branch, with the direction of the branch and what changes sign at bifurcations.
+//! A motion on a branch, with the direction of the branch and the test functions of bifurcations.
 
 use super::forced::Forced;
 use super::orbit::Orbit;
@@ -11,8 +11,8 @@ pub(super) struct Node {
     pub solution: Solution,
     pub direction: DVector<f64>,
     pub orbit: Orbit,
-    /// What changes sign at a fold, at a crossing of branches, at a period doubling and at a Neimark–Sacker bifurcation; exactly 0 at one that is a
-    /// start or an end.
+    /// Test functions that change sign at a fold, a crossing of branches, a period doubling and a Neimark–Sacker bifurcation; exactly 0 at
+    /// one that is a start or an end.
     pub tests: [f64; 4],
 }
 
@@ -29,7 +29,7 @@ impl Node {
         Some(Self { solution, direction, orbit, tests })
     }
 
-    /// The motion of half the periods that begins with these states, taken twice: at a period doubling two branches meet in it.
+    /// The motion of half the periods with these states, repeated twice: two branches meet in it at a period doubling.
     pub(super) fn doubled(
         shooting: &Shooting<impl Forced>,
         half: &[[f64; 4]],
@@ -43,33 +43,34 @@ impl Node {
         Some(Self { solution, direction, orbit, tests: [0.0, 0.0, doubling, circle] })
     }
 
-    /// The same motion, from which the branch goes to the other side.
-    pub(super) fn turned(self) -> Self {
+    /// This motion with the branch's direction reversed.
+    pub(super) fn reversed(self) -> Self {
         let [fold, crossing, doubling, circle] = self.tests;
         Self { direction: -self.direction, tests: [-fold, -crossing, doubling, circle], ..self }
     }
 
-    /// The same motion from the segment on that is so many before its first.
-    pub(super) fn moved_back(mut self, shooting: &Shooting<impl Forced>, shift: usize) -> Option<Self> {
+    /// This motion, begun `shift` segments earlier.
+    pub(super) fn shifted_back(mut self, shooting: &Shooting<impl Forced>, shift: usize) -> Option<Self> {
         let on = shooting.segments - shift;
-        self.solution.x = shooting.moved_on(&self.solution.x, on);
-        self.direction = shooting.moved_on(&self.direction, on);
+        self.solution.x = shooting.shifted(&self.solution.x, on);
+        self.direction = shooting.shifted(&self.direction, on);
         self.orbit.states.rotate_right(shift);
-        self.orbit.seen_anew(shooting)?;
+        self.orbit.recompute_seen(shooting)?;
         Some(self)
     }
 
-    /// Whether multipliers leave or enter the unit circle on the way to another motion by as many as events with these numbers of multipliers tell.
-    pub(super) fn is_told(&self, next: &Self, events: impl Iterator<Item = usize>) -> bool {
+    /// Whether as many multipliers cross the unit circle on the way to another motion as events with these numbers of multipliers account
+    /// for.
+    pub(super) fn crossings_match(&self, next: &Self, events: impl Iterator<Item = usize>) -> bool {
         let outside =
             |node: &Self| node.orbit.multipliers.iter().filter(|multiplier| multiplier.norm() > 1.0).count();
-        let (change, told) = (outside(self).abs_diff(outside(next)), events.sum::<usize>());
+        let (change, expected) = (outside(self).abs_diff(outside(next)), events.sum::<usize>());
         let at_bifurcation = [self, next].iter().any(|node| node.tests.contains(&0.0));
-        at_bifurcation || change <= told && (told - change).is_multiple_of(2)
+        at_bifurcation || change <= expected && (expected - change).is_multiple_of(2)
     }
 }
 
-/// What changes sign where a multiplier is -1, and where the product of two is 1.
+/// Test functions that change sign where a multiplier is -1, and where the product of two is 1.
 fn on_circle(orbit: &Orbit, at: &Linearised) -> [f64; 2] {
     let doubling: Complex<f64> = orbit.multipliers.iter().map(|multiplier| multiplier + 1.0).product();
     [doubling.re, (at.compound() - Matrix6::identity()).determinant()]

@@ -1,5 +1,5 @@
-//! From which value of a parameter on a motion is there: it is followed back along the parameter, to the bifurcation beyond which it is no
-//! stable motion, at several frequencies; the least of these values is where its branch along ω begins.
+//! The value of a parameter from which a motion exists. At several frequencies the motion is followed down along the parameter to the
+//! bifurcation beyond which it is not stable; the least of these values is where its branch along ω begins.
 
 use super::branches::Branches;
 use super::orbit::Orbit;
@@ -7,11 +7,11 @@ use super::shooting::Shooting;
 use super::trace::{Branch, trace};
 use retune_model::{Parameter, Scene};
 
-/// Motions of a branch from which the parameter is changed.
+/// Number of motions of a branch from which the parameter is changed.
 const SEEDS: usize = 7;
 /// The unit of the parameter on the way, as a share of its value: steps are at most a fiftieth of this.
 const SPAN: f64 = 0.5;
-/// Parabolas through the three lowest values, towards the least.
+/// Number of refinements by a parabola through the three lowest values.
 const PARABOLAS: usize = 3;
 
 /// A motion at a frequency, which is the value of its orbit.
@@ -34,7 +34,7 @@ pub struct Onset {
 }
 
 impl Branches {
-    /// Some stable motions along ω that count, of each branch that has any, and each motion whose branch is not known.
+    /// Some stable motions along ω for which `counts` is true, of each branch that has any, and each such motion whose branch is not known.
     pub fn seeds(&self, shooting: &Shooting, counts: impl Fn(&Orbit) -> bool) -> Vec<Vec<Seed>> {
         let seed =
             |orbit: &Orbit| Seed { shooting: shooting.of_periods(orbit.periods), orbit: orbit.clone() };
@@ -45,7 +45,7 @@ impl Branches {
         of_branches.chain(alone).filter(|seeds| !seeds.is_empty()).collect()
     }
 
-    /// Follows the branch of a motion of the scene, if it is on none that is known.
+    /// Follows the branch of a motion of the scene, unless it is on a known one.
     pub fn adopt(&mut self, seed: &Seed) {
         let Seed { shooting, orbit } = seed;
         let motion = shooting.correct_at_value(&shooting.unknowns(&orbit.states, orbit.value));
@@ -58,7 +58,7 @@ impl Branches {
 }
 
 impl Branch {
-    /// Some of its stable motions that count, in the order of their ω.
+    /// Some of its stable motions for which `counts` is true, in the order of their ω.
     pub fn seeds(&self, counts: impl Fn(&Orbit) -> bool) -> Vec<Seed> {
         let stable = (0..self.points.len()).filter(|i| self.is_stable_at(*i)).map(|i| &self.points[i]);
         let all: Vec<&Orbit> = stable.filter(|orbit| counts(orbit)).collect();
@@ -88,17 +88,17 @@ impl Seed {
         Some(Self { shooting, orbit: Orbit { value: self.orbit.value, ..end } })
     }
 
-    /// The stable motions on the way of a parameter to a value, back from where they turn if they do.
+    /// The stable motions as a parameter changes towards a value, also beyond a fold.
     fn along(&self, parameter: Parameter, to: f64) -> Option<Vec<Orbit>> {
-        let own = parameter.of(&self.shooting.forced.scene).filter(|own| *own > 0.0)?;
-        let along = self.shooting.along(self.orbit.value, parameter, SPAN * own).ok()?;
-        let start = along.correct_at_value(&along.unknowns(&self.orbit.states, own))?;
-        let branch = trace(&along, &start, [own.min(to), own.max(to)], &|| true)?;
+        let from = parameter.of(&self.shooting.forced.scene).filter(|from| *from > 0.0)?;
+        let along = self.shooting.along(self.orbit.value, parameter, SPAN * from).ok()?;
+        let start = along.correct_at_value(&along.unknowns(&self.orbit.states, from))?;
+        let branch = trace(&along, &start, [from.min(to), from.max(to)], &|| true)?;
         let stable = (0..branch.points.len()).filter(|i| branch.is_stable_at(*i));
         Some(stable.map(|i| branch.points[i].clone()).collect())
     }
 
-    /// The least value of a parameter down to `to` at which it is there and counts.
+    /// The least value of a parameter, down to `to`, at which it exists and `counts` is true.
     fn onset(
         &self,
         parameter: Parameter,
@@ -118,8 +118,8 @@ impl Seed {
     }
 }
 
-/// The least value of a parameter, from that of the scene down to `to`, at which the motions of a branch along ω are there and count. The value of
-/// the motions that are asked whether they count is that of the parameter.
+/// The least value of a parameter, from that of the scene down to `to`, at which motions of a branch along ω exist and `counts` is true.
+/// The value of the motions passed to `counts` is that of the parameter.
 pub fn onset(
     seeds: &[Seed],
     parameter: Parameter,

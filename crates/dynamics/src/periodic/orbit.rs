@@ -1,4 +1,4 @@
-//! What a periodic motion is like: its largest values, its impacts, its stability.
+//! Properties of a periodic motion: its largest values, its impacts, its stability.
 
 use super::forced::Forced;
 use super::seen::Seen;
@@ -22,7 +22,7 @@ pub struct Orbit {
 }
 
 impl Orbit {
-    /// What a solution is like.
+    /// The properties of a solution.
     ///
     /// # Errors
     /// The system cannot be run there.
@@ -33,8 +33,8 @@ impl Orbit {
         Ok(Self { value, periods: shooting.periods, states, multipliers, seen })
     }
 
-    /// Takes its largest values from its states and its value again, which were changed, so that whoever has these finds those to the last bit.
-    pub(super) fn seen_anew(&mut self, shooting: &Shooting<impl Forced>) -> Option<()> {
+    /// Recomputes its largest values after its states or its value were changed, so that they can be reproduced from these bit for bit.
+    pub(super) fn recompute_seen(&mut self, shooting: &Shooting<impl Forced>) -> Option<()> {
         self.seen = shooting.forced.seen(self.value, self.periods, &self.states).ok()?;
         Some(())
     }

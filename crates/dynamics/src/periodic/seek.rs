@@ -1,4 +1,4 @@
-//! What the runs at the samples have not led to: motions that are stable over little of the range, and those that no run settles on.
+//! Searches for motions that the runs at the samples miss: those stable over little of the range, and those that no run settles on.
 
 use super::attractors::{Sample, attractors_at};
 use super::branches::Branches;
@@ -11,11 +11,11 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 use retune_solver::{Motion, Phase};
 
-/// Periods after which a run has come near to a motion, or to one that it leaves again.
+/// Periods after which a run has come near to a motion, stable or not.
 const PASSED: usize = 20;
 
 impl Branches {
-    /// Runs from rest at many values of the parameter: the branches of those motions that are on none so far.
+    /// Follows the branches of new motions that runs from rest at many values of the parameter settle on.
     ///
     /// # Errors
     /// A scene in the range cannot be run.
@@ -28,7 +28,7 @@ impl Branches {
         let [from, to] = self.plan.range;
         let unknown = |branches: &Self, value: f64| -> Result<bool, Error> {
             let seen = attractors_at(shooting, value, (starts, 0), proceed)?;
-            Ok(seen.is_any(shooting, |own, motion| branches.holds(own, motion).is_none()))
+            Ok(seen.any(shooting, |equations, motion| branches.holds(equations, motion).is_none()))
         };
         let values = evenly(from, to, self.plan.fine);
         let seen: Result<Vec<bool>, Error> = values.par_iter().map(|value| unknown(self, *value)).collect();
@@ -42,8 +42,7 @@ impl Branches {
         Ok(())
     }
 
-    /// Newton's iteration from states that runs pass, kept away from the motions of so many periods that are known: the branches of those
-    /// that it finds.
+    /// Follows the branches of new motions of `periods` periods that deflated Newton's iteration finds from states that runs pass.
     ///
     /// # Errors
     /// A scene in the range cannot be run.
@@ -54,18 +53,18 @@ impl Branches {
         periods: usize,
         proceed: &(dyn Fn() -> bool + Sync),
     ) -> Result<(), Error> {
-        let own = shooting.of_periods(periods);
+        let equations = shooting.of_periods(periods);
         let near = Periods { settle: PASSED - periods, record: periods };
-        let others = |sample: &Sample| -> Result<Vec<Solution>, Error> {
+        let find_new = |sample: &Sample| -> Result<Vec<Solution>, Error> {
             let value = sample.value;
-            let system = own.system(value)?;
+            let system = equations.system(value)?;
             let mut known = self.solutions(shooting, periods, value);
             let mut found = Vec::new();
             for y in (0..self.plan.apart).map(|number| starts.state(number, &system)) {
                 let from = Motion { t: 0.0, y, phase: Phase::of(&system, &y) };
-                let (run, _) = orbit(&system, value, from, near, own.settings())?;
-                let start = own.unknowns(&run.samples, value);
-                while let Some(motion) = proceed().then(|| another(&own, &start, &known)).flatten() {
+                let (run, _) = orbit(&system, value, from, near, equations.settings())?;
+                let start = equations.unknowns(&run.samples, value);
+                while let Some(motion) = proceed().then(|| another(&equations, &start, &known)).flatten() {
                     known.push(motion.x.clone());
                     found.push(motion);
                 }
@@ -73,24 +72,24 @@ impl Branches {
             Ok(found)
         };
         let found: Result<Vec<Vec<Solution>>, Error> =
-            self.samples.par_iter().filter(|sample| sample.number.is_none()).map(others).collect();
+            self.samples.par_iter().filter(|sample| sample.number.is_none()).map(find_new).collect();
         for motion in found?.into_iter().flatten() {
-            if self.holds(&own, &motion).is_none() {
-                self.follow(&own, &motion, proceed);
+            if self.holds(&equations, &motion).is_none() {
+                self.follow(&equations, &motion, proceed);
             }
         }
         Ok(())
     }
 
-    /// The motions on all branches at a value that repeat after so many periods, those that repeat sooner among them.
+    /// The motions on all branches at a value that repeat after `periods` periods, including those that repeat sooner.
     fn solutions(&self, shooting: &Shooting, periods: usize, value: f64) -> Vec<DVector<f64>> {
-        let own = shooting.of_periods(periods);
+        let equations = shooting.of_periods(periods);
         let shorter = (1..=periods).filter(|shorter| periods.is_multiple_of(*shorter));
         let all = shorter.flat_map(|shorter| {
             let part = shooting.of_periods(shorter);
             let states = self.at(&part, value).into_iter().map(move |motion| part.states(&motion.x));
             states.map(move |states| states.repeat(periods / shorter))
         });
-        all.map(|states| own.unknowns(&states, value)).collect()
+        all.map(|states| equations.unknowns(&states, value)).collect()
     }
 }

@@ -1,4 +1,4 @@
-//! What is seen of a periodic motion: its largest values and its impacts.
+//! Observed quantities of a periodic motion: its largest values and its impacts.
 
 use crate::parameter::Error;
 use crate::poincare::coupled;
@@ -10,8 +10,8 @@ use std::f64::consts::TAU;
 /// The largest values and the impacts of a periodic motion.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Seen {
-    /// The walls that it strikes in turn, S for the structure and O for the obstacle, beginning where this reads first in the alphabet;
-    /// empty if none.
+    /// The walls that it strikes in turn, S for the structure and O for the obstacle, as the alphabetically first cyclic rotation; empty if
+    /// none.
     pub impacts: String,
     /// The largest value of each measure.
     pub largest: PerMeasure<f64>,
@@ -19,8 +19,8 @@ pub struct Seen {
     pub start: [f64; 4],
 }
 
-/// Follows a motion of so many periods from its states at the beginnings of equal segments: each segment from its own, so that an
-/// unstable motion is not left.
+/// Observes a motion of `periods` periods, given by its states at the beginnings of equal segments. Each segment is run from its own state,
+/// so that the run does not depart from an unstable motion.
 ///
 /// # Errors
 /// The scene cannot be run.
@@ -35,7 +35,7 @@ pub fn seen(scene: &Scene, settings: &Settings, periods: usize, states: &[[f64; 
     }
     let (values, touches) = all;
     let start = states.first().copied().unwrap_or_default();
-    let impacts = turned(touches.0.iter().map(|(_, side)| *side));
+    let impacts = canonical(touches.0.iter().map(|(_, side)| *side));
     Ok(Seen { impacts, largest: values.values(), start })
 }
 
@@ -46,8 +46,8 @@ impl Seen {
     }
 }
 
-/// The impacts in turn, from where they read first in the alphabet.
-fn turned(sides: impl Iterator<Item = Side>) -> String {
+/// The alphabetically first cyclic rotation of the impacts.
+fn canonical(sides: impl Iterator<Item = Side>) -> String {
     let letter = |side: Side| if side == Side::Primary { 'S' } else { 'O' };
     let word: Vec<char> = sides.map(letter).collect();
     let turns = (0..word.len()).map(|from| [&word[from..], &word[..from]].concat());

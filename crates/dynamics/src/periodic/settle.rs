@@ -1,4 +1,4 @@
-//! What runs settle on: periodic motions from many starts, and how many of the starts end there.
+//! The motions that runs from many starts settle on.
 
 use super::forced::Forced;
 use super::seen::{Seen, seen};
@@ -13,11 +13,11 @@ use retune_solver::{Motion, Phase, Settings};
 use std::cell::OnceCell;
 use std::f64::consts::TAU;
 
-/// Periods of the force after which a run is looked at, again and again up to the last; one that has not settled by then is irregular.
+/// Periods of the force after which a run is checked for repetition; one that has not settled by the last is irregular.
 pub(super) const CHECKS: [usize; 4] = [60, 120, 240, 480];
-/// Periods of the force at resonance whose energy counts as reached.
+/// Periods of the force at resonance that limit the energy taken as reachable.
 const AT_RESONANCE: f64 = 60.0;
-/// Values at which it is looked at.
+/// Number of values at which the reachable energy is evaluated.
 const REACHED: usize = 129;
 /// Points of a Sobol sequence.
 const LENGTH: usize = 1 << 16;
@@ -25,12 +25,12 @@ const LENGTH: usize = 1 << 16;
 pub const MOST_PERIODS: usize = 12;
 /// A run that repeats to this share of its size is near enough for Newton's iteration.
 pub(super) const NEAR: f64 = 1e-4;
-/// Two motions nearer than this share of their size are one.
+/// Two motions nearer than this share of their size are the same.
 pub(super) const SAME: f64 = 1e-6;
 /// Periods over which an irregular motion's largest values are taken.
 const WATCHED: usize = 100;
 
-/// What a run ends on.
+/// The motion that a run settles on.
 #[derive(Clone, Debug)]
 pub enum Settled {
     /// A stable periodic motion.
@@ -88,7 +88,7 @@ fn repeated(shooting: &Shooting, scene: &Scene, value: f64, last: &[[f64; 4]]) -
     let end = last.len().checked_sub(1)?;
     let at = |i: usize| coordinates(scene, &last[i]);
     let size = distance(&at(end), &[0.0; 4]).max(f64::MIN_POSITIVE);
-    // A damper that floats comes to rest in the middle after all, but not in the time that a run has.
+    // A damper without a spring has a tiny one here and comes to rest in the middle, but not within a run.
     let afloat = OnceCell::new();
     let is_afloat =
         || *afloat.get_or_init(|| shooting.is_floating && touches_nothing(shooting, scene, &last[end]));
@@ -97,17 +97,17 @@ fn repeated(shooting: &Shooting, scene: &Scene, value: f64, last: &[[f64; 4]]) -
         if distance(&at(end), &at(end - periods)) > NEAR * size {
             continue;
         }
-        let own = shooting.of_periods(periods);
+        let equations = shooting.of_periods(periods);
         let mut states = last[end - periods + 1..].to_vec();
         if is_afloat() {
             states.iter_mut().for_each(|y| y[2] = y[0] + rest);
         }
-        let start = own.unknowns(&states, value);
-        let Some(solution) = own.correct_at_value(&start) else { continue };
+        let start = equations.unknowns(&states, value);
+        let Some(solution) = equations.correct_at_value(&start) else { continue };
         let multipliers = super::orbit::multipliers(&solution.at.monodromy());
-        let moved = own.norm(&(&solution.x - &start));
+        let moved = equations.norm(&(&solution.x - &start));
         if multipliers[0].norm() < 1.0 && (moved < 100.0 * NEAR || is_afloat()) {
-            return shortest(&own, solution);
+            return shortest(&equations, solution);
         }
     }
     None
@@ -118,7 +118,7 @@ fn touches_nothing(shooting: &Shooting, scene: &Scene, y: &[f64; 4]) -> bool {
     seen(scene, shooting.settings(), 1, &[*y]).is_ok_and(|seen| seen.impacts.is_empty())
 }
 
-/// Whether two motions are one, at whatever crest of the force each begins.
+/// Whether two motions are the same, whatever crest of the force each begins at.
 pub fn is_same(shooting: &Shooting, a: &Solution, b: &Solution) -> bool {
     a.x.len() == b.x.len() && shooting.nearest(&a.x, &b.x).1 < SAME
 }
@@ -126,31 +126,31 @@ pub fn is_same(shooting: &Shooting, a: &Solution, b: &Solution) -> bool {
 /// The least number of periods after which a motion repeats.
 pub(super) fn least_periods(shooting: &Shooting<impl Forced>, x: &DVector<f64>) -> usize {
     let (n, share) = (shooting.periods, shooting.segments / shooting.periods);
-    let repeats = |periods: &usize| (shooting.moved_on(x, periods * share) - x).amax() < SAME;
+    let repeats = |periods: &usize| (shooting.shifted(x, periods * share) - x).amax() < SAME;
     let mut shares = (1..n).filter(|periods| n.is_multiple_of(*periods));
     if n * share == shooting.segments { shares.find(repeats).unwrap_or(n) } else { n }
 }
 
-/// A motion by the least number of periods after which it repeats.
+/// A motion reduced to the least number of periods after which it repeats.
 fn shortest(shooting: &Shooting, solution: Solution) -> Option<(usize, Solution)> {
     let periods = least_periods(shooting, &solution.x);
     if periods == shooting.periods {
         return Some((periods, solution));
     }
-    let own = shooting.of_periods(periods);
-    let start = own.unknowns(&shooting.states(&solution.x)[..periods], shooting.value(&solution.x));
-    Some((periods, own.correct_at_value(&start)?))
+    let equations = shooting.of_periods(periods);
+    let start = equations.unknowns(&shooting.states(&solution.x)[..periods], shooting.value(&solution.x));
+    Some((periods, equations.correct_at_value(&start)?))
 }
 
-/// The energy that the structure reaches without damper, J: in its steady motion, or, where that takes longer, at resonance from rest within
-/// some periods. Without damping there is no steady motion at resonance.
+/// The energy that the structure reaches without damper, J: the lesser of that of its steady motion and that reached at resonance from rest
+/// in [`AT_RESONANCE`] periods. Without damping there is no steady motion at resonance.
 pub(super) fn most_energy(scene: &Scene) -> f64 {
     let bare = Bare::new(&scene.primary, &scene.forcing);
     let omega = bare.frequency();
     bare.steady(omega).e1_max.min(bare.resonant_energy(AT_RESONANCE * TAU / omega))
 }
 
-/// Where runs are started: anywhere that the force can bring the structure without damper, somewhere in a range of a parameter.
+/// Starts of runs: states that the force can bring the structure to without damper, at values in a range of a parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct Starts {
     /// The largest speed of the structure there, m/s.

@@ -9,12 +9,13 @@ use retune_solver::Settings;
 
 /// Largest gap between segments of a solution, relative to the size of the motion.
 const CLOSED: f64 = 2e-11;
-/// Most of Newton's iterations. They gain digits fast or not at all.
+/// Most Newton iterations. They converge fast or not at all.
 const ITERATIONS: usize = 9;
 /// A change larger than this share of the motion leaves the neighbourhood in which the iteration can be trusted.
 const FAR: f64 = 0.5;
-/// The spring of a damper that has none, as a share of `m2 ω²`. Without it a damper that touches no wall repeats wherever it floats, and no such
-/// motion is stable or alone; with it the one about the place of rest is. It moves any other motion by about this share of its size.
+/// The stiffness given to a damper without a spring, as a share of `m2 ω²`. Without it a motion that touches no wall can be shifted freely,
+/// so it is neither stable nor isolated; with it the motion about the place of rest is. Any other motion changes by about this share of its
+/// size.
 const FLOATING: f64 = 1e-8;
 
 /// The equations of motions with a number of periods of the force, along a parameter.
@@ -30,7 +31,7 @@ pub struct Shooting<S = Damped> {
     pub segments: usize,
     /// The unit of the parameter.
     pub span: f64,
-    /// Units of the state: what it is multiplied by.
+    /// Factors that scale the state.
     pub scale: Vector4<f64>,
     /// Whether the damper has no spring of its own.
     pub is_floating: bool,
@@ -59,8 +60,8 @@ pub struct Solution {
 }
 
 impl Shooting {
-    /// The equations of motions of a damper of about the size of `size` (√J, see [`crate::record::coordinates`]), with one segment a period. A damper
-    /// without a spring has one of a tiny share of its inertia.
+    /// The equations of motions of a damper of about the size `size` (√J, see [`crate::record::coordinates`]), with one segment a period. A
+    /// damper without a spring is given a tiny one.
     pub fn new(
         mut scene: Scene,
         parameter: Parameter,
@@ -79,7 +80,7 @@ impl Shooting {
         Self { forced, periods, segments: periods, span, scale, is_floating }
     }
 
-    /// The same along another parameter from a value of this one on.
+    /// The equations along another parameter, at a value of this one.
     ///
     /// # Errors
     /// The value is out of range.
@@ -111,13 +112,13 @@ impl Shooting {
 }
 
 impl<S: Forced> Shooting<S> {
-    /// The same for another number of periods, with as many segments.
+    /// The equations for another number of periods, with as many segments.
     #[must_use]
     pub fn of_periods(&self, periods: usize) -> Self {
         Self { periods, segments: periods, ..self.clone() }
     }
 
-    /// The same in so many segments.
+    /// The equations with another number of segments.
     #[must_use]
     pub fn in_segments(&self, segments: usize) -> Self {
         Self { segments, ..self.clone() }
@@ -139,20 +140,20 @@ impl<S: Forced> Shooting<S> {
         (0..self.segments).map(|k| std::array::from_fn(|i| x[4 * k + i] / self.scale[i])).collect()
     }
 
-    /// The distance of two vectors of unknowns: a root mean square over the segments.
+    /// The norm of a vector of unknowns: a root mean square over the segments, and the parameter.
     pub fn norm(&self, x: &DVector<f64>) -> f64 {
         self.inner(x, x).sqrt()
     }
 
-    /// Its inner product.
+    /// The inner product of [`Self::norm`].
     pub fn inner(&self, a: &DVector<f64>, b: &DVector<f64>) -> f64 {
         let last = 4 * self.segments;
         let states: f64 = (0..last).map(|i| a[i] * b[i]).sum();
         states / self.segments as f64 + a[last] * b[last]
     }
 
-    /// The number of segments by which `b` is to be moved on to come nearest to `a`, and their largest difference in the states then: a
-    /// motion of several periods may begin at any crest of the force.
+    /// The shift in segments that brings `b` nearest to `a`, and the largest difference of their states then: a motion of several periods
+    /// may begin at any crest of the force.
     pub fn nearest(&self, a: &DVector<f64>, b: &DVector<f64>) -> (usize, f64) {
         let n = 4 * self.segments;
         let gap = |shift: usize| (0..n).map(|i| (a[i] - b[(i + 4 * shift) % n]).abs()).fold(0.0, f64::max);
@@ -160,14 +161,14 @@ impl<S: Forced> Shooting<S> {
         all.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, f64::INFINITY))
     }
 
-    /// The numbers of the segments that begin at a crest of the force; the first alone if periods are not cut into as many segments each.
+    /// The segments that begin at a crest of the force; only the first if the periods do not all have equally many segments.
     pub fn crests(&self) -> impl Iterator<Item = usize> + use<S> {
         let whole = self.segments.is_multiple_of(self.periods);
         (0..self.segments).step_by(if whole { self.segments / self.periods } else { self.segments })
     }
 
-    /// Unknowns or a direction, moved on by so many segments.
-    pub fn moved_on(&self, x: &DVector<f64>, shift: usize) -> DVector<f64> {
+    /// Unknowns or a direction, shifted cyclically by `shift` segments.
+    pub fn shifted(&self, x: &DVector<f64>, shift: usize) -> DVector<f64> {
         let n = 4 * self.segments;
         DVector::from_fn(n + 1, |i, _| if i < n { x[(i + 4 * shift) % n] } else { x[n] })
     }
@@ -207,7 +208,7 @@ impl<S: Forced> Shooting<S> {
             let change = self.change(&at, normal, self.inner(normal, &(&x - start)))?;
             let size = self.norm(&change);
             if at.gaps.amax() <= CLOSED {
-                // One change more costs nothing: its derivatives are known.
+                // The last change is free: its derivatives are known.
                 x += change;
                 return Some(Solution { x, at, iterations });
             }
@@ -225,12 +226,12 @@ impl<S: Forced> Shooting<S> {
         self.correct(start, &self.by_value())
     }
 
-    /// Newton's change of unknowns whose value of the parameter stays.
+    /// Newton's change of the unknowns at a fixed value of the parameter.
     pub fn change_at_value(&self, x: &DVector<f64>) -> Option<DVector<f64>> {
         self.change(&self.linearised(x).ok()?, &self.by_value(), 0.0)
     }
 
-    /// Newton's change where the equations are `at`, and `out` is how far the unknowns are off a plane with this normal.
+    /// Newton's change for the equations `at`, with the distance `out` of the unknowns from the plane with this normal.
     fn change(&self, at: &Linearised, normal: &DVector<f64>, out: f64) -> Option<DVector<f64>> {
         let mut right = at.gaps.clone().insert_row(4 * self.segments, out);
         right.neg_mut();
@@ -267,8 +268,8 @@ impl Linearised {
         self.transitions.iter().fold(Matrix4::identity(), |product, transition| transition * product)
     }
 
-    /// The second compound of the monodromy matrix: its eigenvalues are the products of two multipliers. As a product of compounds it has those of a large
-    /// and a small one to rounding, which the multipliers themselves have not.
+    /// The second compound of the monodromy matrix: its eigenvalues are the products of two multipliers. Computed as a product of
+    /// compounds, it is accurate to rounding even for a large and a small multiplier, which the multipliers themselves are not.
     pub fn compound(&self) -> Matrix6<f64> {
         const PAIRS: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
         let minor = |m: &Matrix4<f64>, [i, j]: [usize; 2], [k, l]: [usize; 2]| {

@@ -1,9 +1,9 @@
 //! A branch of periodic motions along a parameter, by pseudo-arclength continuation.
 //!
-//! From a motion, a step along the branch's direction, then Newton's iteration in the plane across it. A step is taken again, half as
-//! long, where the iteration needs many rounds, ends far from the prediction or on a motion of a shorter period, the direction turns by more
-//! than [`TURN`], or what happens on the way cannot be located, because the motions there are not one branch: so it neither jumps to another
-//! branch nor cuts a fold short. At a period doubling it goes on to the branch of twice the period.
+//! Each step predicts along the branch's direction and corrects by Newton's iteration in the plane across it. A step is repeated at half
+//! its length where the iteration needs many rounds, ends far from the prediction or on a motion of a shorter period, where the direction
+//! turns by more than [`TURN`], or where an event cannot be located because the motions there are not one branch. So the continuation
+//! neither jumps to another branch nor cuts a fold short. At a period doubling it starts the branch of twice the period.
 
 use super::events::{End, Event, EventKind, located};
 use super::forced::{Damped, Forced};
@@ -17,7 +17,7 @@ use nalgebra::{DVector, Matrix4, Vector4};
 const FIRST: f64 = 2e-3;
 const LONGEST: f64 = 0.02;
 const SHORTEST: f64 = 1e-12;
-/// Most steps to one side, and the most periods of unstable motions in a row: long ones in chaos wind on without end.
+/// Most steps to one side, and most periods of consecutive unstable motions: long ones in chaos continue without end.
 const MOST: usize = 3000;
 const UNSTABLE: usize = 600;
 /// Least cosine of the angle by which the direction may turn in a step.
@@ -26,27 +26,28 @@ const TURN: f64 = 0.95;
 const STRAIGHT: f64 = 0.995;
 /// How far from the prediction a solution may be, as a share of the step.
 const ASTRAY: f64 = 0.3;
-/// Halves of a motion nearer than this share of its size are at a period doubling, where two branches meet and Newton's iteration finds either.
+/// A motion whose halves differ by less than this share of its size is at a period doubling, where two branches meet and Newton's iteration
+/// finds either.
 const JOINED: f64 = 1e-4;
-/// Halves nearer than this share of a step are the same: the step has ended on the branch of half the periods.
+/// Halves nearer than this share of a step count as equal: the step has ended on the branch of half the periods.
 const MET: f64 = 0.1;
 
-/// A branch: its motions in their order, with what happens between them.
+/// A branch: its motions in order, with the events between them.
 #[derive(Clone, Debug)]
 pub struct Branch<S = Damped> {
     /// The equations of its motions.
     pub shooting: Shooting<S>,
     /// Its motions. Those at events are among them.
     pub points: Vec<Orbit>,
-    /// What happens along it, in this order.
+    /// Its events, in order.
     pub events: Vec<Event>,
     /// How it ends on either side.
     pub ends: [End; 2],
 }
 
 impl<S> Branch<S> {
-    /// Whether the motions between point `i` and the next are stable. At a bifurcation itself a multiplier is on the unit circle, and
-    /// rounding decides on which side: the other point counts.
+    /// Whether the motions between point `i` and the next are stable. At a bifurcation a multiplier is on the unit circle and its side is
+    /// due to rounding, so only the other point decides.
     pub fn is_stable_after(&self, i: usize) -> bool {
         let last = self.points.len().saturating_sub(1);
         let at_bifurcation = |place: usize| {
@@ -68,7 +69,7 @@ impl<S> Branch<S> {
     }
 }
 
-/// The branch through a solution, to both sides, as long as it goes on.
+/// Traces the branch through a solution to both sides, as long as `proceed` is true.
 pub fn trace<S: Forced>(
     shooting: &Shooting<S>,
     seed: &Solution,
@@ -78,7 +79,7 @@ pub fn trace<S: Forced>(
     trace_while(shooting, seed, [from, to], &|_| proceed())
 }
 
-/// The same as long as `proceed` says so of the motion that it has come to.
+/// [`trace`] as long as `proceed` is true for the current motion.
 pub(super) fn trace_while<S: Forced>(
     shooting: &Shooting<S>,
     seed: &Solution,
@@ -88,14 +89,14 @@ pub(super) fn trace_while<S: Forced>(
     let start = Node::new(shooting, seed.clone(), &shooting.by_value())?;
     let (after, end) = side(shooting, &start, [from, to], proceed);
     if end == End::Closed {
-        return Some(joined(shooting, Vec::new(), &start, after, [End::Closed; 2]));
+        return Some(assembled(shooting, Vec::new(), &start, after, [End::Closed; 2]));
     }
-    let back = start.clone().turned();
+    let back = start.clone().reversed();
     let (before, begin) = side(shooting, &back, [from, to], proceed);
-    Some(joined(shooting, before, &start, after, [begin, end]))
+    Some(assembled(shooting, before, &start, after, [begin, end]))
 }
 
-/// The branch that begins at a period doubling of another; none if it is not one, or no motion is found on it.
+/// The branch that begins at a period doubling; none if the event is not one, or if no motion is found.
 pub fn doubled<S: Forced>(
     shooting: &Shooting<S>,
     event: &Event,
@@ -105,7 +106,7 @@ pub fn doubled<S: Forced>(
     if event.kind != EventKind::PeriodDoubling {
         return None;
     }
-    // The change that comes back with the opposite sign: `(M + 1) v = 0`.
+    // The perturbation that returns with the opposite sign: `(M + 1) v = 0`.
     let svd = (event.at.monodromy() + Matrix4::identity()).svd(false, true);
     let least = svd.singular_values.imin();
     let mut change: Vector4<f64> = svd.v_t?.row(least).transpose();
@@ -122,11 +123,11 @@ pub fn doubled<S: Forced>(
     direction /= twice.norm(&direction);
     let start = Node::doubled(&twice, &event.orbit.states, event.orbit.value, direction)?;
     let branch = trace_from(&twice, &start, range, proceed);
-    // One that is closed does not begin at the period doubling: the step has missed.
+    // A closed branch does not begin at the period doubling: the step has missed it.
     (branch.points.len() > 1 && branch.ends[1] != End::Closed).then_some(branch)
 }
 
-/// The branch from a solution to one side alone.
+/// Traces the branch from a solution to one side.
 fn trace_from<S: Forced>(
     shooting: &Shooting<S>,
     start: &Node,
@@ -134,10 +135,10 @@ fn trace_from<S: Forced>(
     proceed: &dyn Fn() -> bool,
 ) -> Branch<S> {
     let (after, end) = side(shooting, start, range, &|_| proceed());
-    joined(shooting, Vec::new(), start, after, [End::Halved, end])
+    assembled(shooting, Vec::new(), start, after, [End::Halved, end])
 }
 
-/// A motion, or an event, found on the way.
+/// A motion found on the way, with its event if it is at one.
 type Passed = (Orbit, Option<Event>);
 
 /// The motions to one side of a start.
@@ -163,7 +164,7 @@ fn side(
             match next {
                 Some(next) => break next,
                 None if step < 2.0 * SHORTEST => {
-                    // A parameter that may not be larger leads no step beyond the end of its range.
+                    // A parameter at the bound of its allowed values permits no step beyond the end of the range.
                     if let Some(node) = at_end(shooting, &now, range) {
                         found.push((node.orbit, None));
                         return (found, End::Range);
@@ -207,10 +208,10 @@ fn ahead(shooting: &Shooting<impl Forced>, now: &Node, step: f64) -> Option<Node
         .filter(|node| shooting.inner(&node.direction, &now.direction) > TURN)
 }
 
-/// The share of a range in which a motion is next to its end.
+/// The share of a range within which a motion is next to its end.
 const NEXT_TO: f64 = 1e-6;
 
-/// The motion at the end of a range that is next to one, which the branch goes to; none if it is not.
+/// The motion at the end of the range towards which the branch goes; none if `now` is not next to it.
 fn at_end(shooting: &Shooting<impl Forced>, now: &Node, [from, to]: [f64; 2]) -> Option<Node> {
     let last = now.direction.len() - 1;
     let end = if now.direction[last] > 0.0 { to } else { from };
@@ -222,7 +223,7 @@ fn at_end(shooting: &Shooting<impl Forced>, now: &Node, [from, to]: [f64; 2]) ->
     located_at(shooting, &guess, now, end)
 }
 
-/// The next motion, or the end of the branch where that comes first; none if it cannot be located.
+/// The next motion, or the end of the branch if it comes first; none if the end cannot be located.
 fn up_to_end(
     shooting: &Shooting<impl Forced>,
     [start, now]: [&Node; 2],
@@ -237,43 +238,43 @@ fn up_to_end(
             Some(End::Range),
         ));
     }
-    // The difference of its halves changes sign where it passes a motion of half its periods, and turns back along itself.
-    let own = halves(shooting, &now.solution.x);
-    if let Some([own, other]) = own.zip(halves(shooting, &next.solution.x)).map(<[_; 2]>::from)
-        && own.dot(&other) < 0.0
+    // The difference of the halves changes sign where the branch passes a motion of half the periods and turns back along itself.
+    let gap = halves(shooting, &now.solution.x);
+    if let Some([gap, next_gap]) = gap.zip(halves(shooting, &next.solution.x)).map(<[_; 2]>::from)
+        && gap.dot(&next_gap) < 0.0
     {
-        let share = own.dot(&own) / (own.dot(&own) - own.dot(&other));
-        return Some((joint(shooting, [now, &next], &own, share)?, Some(End::Halved)));
+        let share = gap.dot(&gap) / (gap.dot(&gap) - gap.dot(&next_gap));
+        return Some((doubling_between(shooting, [now, &next], &gap, share)?, Some(End::Halved)));
     }
-    // Back at the start: it lies between the last motion and the next, which were farther away before and go in the same direction. Before the
-    // branch has turned all the way round, it is away by more than its last step. A thin isola is not much longer than a step.
+    // Closed: the start lies between this motion and the next, the direction is the same, and the branch was farther away before. Before
+    // the branch has come round it is farther from the start than its last step. A thin isola is not much longer than a step.
     let (shift, away) = away(shooting, start, &next);
     let came = shooting.norm(&(&next.solution.x - &now.solution.x));
-    let [x, direction] = [&next.solution.x, &next.direction].map(|x| shooting.moved_on(x, shift));
+    let [x, direction] = [&next.solution.x, &next.direction].map(|x| shooting.shifted(x, shift));
     let alike = shooting.inner(&direction, &start.direction) > TURN;
     let passed = shooting.inner(&(x - &start.solution.x), &start.direction) >= 0.0;
     if apart > came && away < came && alike && passed {
-        return Some((start.clone().moved_back(shooting, shift)?, Some(End::Closed)));
+        return Some((start.clone().shifted_back(shooting, shift)?, Some(End::Closed)));
     }
     Some((next, None))
 }
 
-/// By how many segments a motion is to be moved on to come nearest to the start of its branch, and how far it is from that then.
+/// The shift in segments that brings a motion nearest to the start of its branch, and the distance then.
 fn away(shooting: &Shooting<impl Forced>, start: &Node, node: &Node) -> (usize, f64) {
     let (shift, _) = shooting.nearest(&start.solution.x, &node.solution.x);
-    (shift, shooting.norm(&(shooting.moved_on(&node.solution.x, shift) - &start.solution.x)))
+    (shift, shooting.norm(&(shooting.shifted(&node.solution.x, shift) - &start.solution.x)))
 }
 
-/// The period doubling at a share of the way between two motions, where half the difference of the halves, `own` at the first, is 0. The parameter goes with
-/// the square of that difference.
-fn joint(
+/// The period doubling at a share of the way between two motions, where the difference of the halves, `gap` at the first, is 0. The
+/// parameter varies with the square of that difference.
+fn doubling_between(
     shooting: &Shooting<impl Forced>,
     [now, next]: [&Node; 2],
-    own: &DVector<f64>,
+    gap: &DVector<f64>,
     share: f64,
 ) -> Option<Node> {
     let last = 4 * shooting.segments;
-    let away = halves(shooting, &now.direction)?.dot(own) / own.dot(own);
+    let away = halves(shooting, &now.direction)?.dot(gap) / gap.dot(gap);
     let x = &now.solution.x + (&next.solution.x - &now.solution.x) * share;
     let mut middle = 0.5 * (x.rows(0, last / 2) + x.rows(last / 2, last / 2));
     middle = middle.push(now.solution.x[last] - 0.5 * now.direction[last] / away);
@@ -283,7 +284,7 @@ fn joint(
     Node::doubled(shooting, &states, value, now.direction.clone())
 }
 
-/// The motion between two at a value of the parameter.
+/// The motion at a value of the parameter between those of two motions.
 fn at_value(shooting: &Shooting<impl Forced>, [now, next]: [&Node; 2], value: f64) -> Option<Node> {
     let [a, b] = [now.orbit.value, next.orbit.value];
     let share = (value - a) / (b - a);
@@ -302,19 +303,19 @@ fn located_at(
 ) -> Option<Node> {
     let mut node = Node::new(shooting, shooting.correct_at_value(guess)?, &now.direction)?;
     node.orbit.value = value;
-    node.orbit.seen_anew(shooting)?;
+    node.orbit.recompute_seen(shooting)?;
     Some(node)
 }
 
-/// The difference of the halves of a motion of an even number of periods.
+/// The difference between the halves of a motion of an even number of periods.
 fn halves(shooting: &Shooting<impl Forced>, x: &DVector<f64>) -> Option<DVector<f64>> {
     let half = 2 * shooting.segments;
     let even = shooting.periods.is_multiple_of(2) && shooting.segments.is_multiple_of(2);
     even.then(|| x.rows(0, half) - x.rows(half, half))
 }
 
-/// Both sides as one branch.
-fn joined<S: Forced>(
+/// Assembles both sides into one branch.
+fn assembled<S: Forced>(
     shooting: &Shooting<S>,
     before: Vec<Passed>,
     start: &Node,

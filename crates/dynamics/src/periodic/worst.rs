@@ -1,5 +1,5 @@
-//! The largest value of a quantity over all motions of a scene in a range of a parameter: exact on branches of stable periodic motions, and of
-//! runs where none is known.
+//! The largest value of a quantity over all motions of a scene in a range of a parameter: exact on branches of stable periodic motions, and
+//! from runs where no such branch is known.
 
 use super::attractors::{Attractor, Sample};
 use super::branches::{Branches, Control, Interval, Plan, branches};
@@ -10,7 +10,7 @@ use crate::parameter::Error;
 use retune_model::{Measure, Scene};
 use retune_solver::Settings;
 
-/// A range without a stable motion is named if it is wider than this share of the range.
+/// A gap without a stable motion is reported if it is wider than this share of the range.
 const NARROW: f64 = 1e-3;
 
 /// The motion with the largest value.
@@ -20,22 +20,22 @@ pub struct Largest {
     pub value: f64,
     /// Where it is, in the parameter's unit.
     pub at: f64,
-    /// The motion; none of a run that did not settle.
+    /// The motion; none for a run that did not settle.
     pub orbit: Option<Orbit>,
     /// A state of it at a crest of the force.
     pub start: [f64; 4],
-    /// Whether runs from rest that were made end on its branch, or did not settle either.
+    /// Whether any run from rest ends on its branch; for an irregular motion, whether the run from rest did not settle.
     pub from_rest: bool,
-    /// Who gets there.
+    /// The share of starts that lead there.
     pub share: Share,
 }
 
 /// How many starts end on a motion or its branch, of those that were made where it is stable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Share {
-    /// Those that end there.
+    /// Number of starts that end there.
     pub ends: usize,
-    /// All of them.
+    /// Number of all starts.
     pub starts: usize,
     /// The least and the largest value of the parameter at which it is stable.
     pub within: Interval,
@@ -48,14 +48,14 @@ impl Share {
     }
 }
 
-/// What motions there are in a range.
+/// The motions in a range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motions {
     /// The largest value of each measure asked for; none where nothing was found.
     pub largest: Vec<Option<Largest>>,
     /// The share of the range over which a stable periodic motion is known.
     pub covered: f64,
-    /// The parts over which none is, and the largest value of the first measure in the runs that were made there.
+    /// The parts over which none is known, and the largest value of the first measure in the runs there that did not settle.
     pub irregular: Vec<(Interval, f64)>,
 }
 
@@ -73,7 +73,7 @@ pub fn motions(
 }
 
 impl Motions {
-    /// Of what was found.
+    /// Summarises the branches found.
     pub fn of(found: &Branches, measures: &[Measure]) -> Self {
         let [from, to] = found.plan.range;
         let first = |seen: &Seen| measures.first().map_or(0.0, |measure| seen.largest(*measure));
@@ -97,8 +97,8 @@ impl Motions {
     }
 }
 
-/// How wide a motion that a share of all starts lead to must be, as a share of a range, for the probability that none of so many starts,
-/// independent and even over the range, leads there to be `missed`: `(1 - share width)^starts = missed`.
+/// The width, as a share of a range, of a motion to which `share` of all starts lead, at which `starts` starts, independent and uniform
+/// over the range, all miss it with the probability `missed`: `(1 - share width)^starts = missed`.
 pub fn width_missed(starts: usize, share: f64, missed: f64) -> f64 {
     (1.0 - missed.powf(1.0 / starts as f64)) / share
 }
@@ -136,7 +136,7 @@ impl Branches {
         all.filter(move |(_, one)| one.branch == Some(number))
     }
 
-    /// How many of the starts over the range, where a branch has stable motions, end on it.
+    /// The share of starts over the range that end on a branch, of those where it has stable motions.
     pub fn share(&self, number: usize) -> Share {
         let ranges = stable_ranges(&self.branches[number]);
         let is_within = |value: f64| ranges.iter().any(|[low, high]| (*low..=*high).contains(&value));
@@ -148,7 +148,8 @@ impl Branches {
         Share { ends: all.clone().filter(ends).count(), starts: all.count(), within }
     }
 
-    /// The same of the runs that do not settle, over the part of the range without a stable motion in which one is.
+    /// Sets the share of an irregular motion: that of the runs that do not settle, over the part of the range without a stable motion
+    /// around it.
     fn irregular_share(&self, one: Largest) -> Largest {
         let [_, irregular] = self.stable_and_irregular();
         let Some([low, high]) = irregular.into_iter().find(|[low, high]| (*low..=*high).contains(&one.at))
@@ -163,12 +164,12 @@ impl Branches {
         }
     }
 
-    /// Whether a run from rest that was made settles on a branch.
+    /// Whether any run from rest settles on a branch.
     pub fn is_reached_from_rest(&self, number: usize) -> bool {
         self.on(number).any(|(_, one)| one.from_rest)
     }
 
-    /// The stable motion with the largest value of a measure on each branch; none of a branch without stable motions.
+    /// The stable motion with the largest value of a measure on each branch; none for a branch without stable motions.
     pub fn largest_of_each(&self, measure: Measure) -> Vec<Option<Orbit>> {
         self.branches.iter().map(|branch| largest(branch, |orbit| orbit.seen.largest(measure))).collect()
     }
@@ -188,7 +189,7 @@ impl Branches {
             })
         });
         let others = self.samples.iter().flat_map(|sample| {
-            // A motion whose branch could not be followed counts where it was met, and so does one that does not repeat.
+            // Motions whose branch could not be followed, and irregular ones, count at the samples.
             let alone = sample.attractors.iter().any(|one| one.branch.is_none());
             (alone || !sample.irregular.is_empty()).then(|| sample.largest(measure)).flatten()
         });

@@ -4,15 +4,15 @@
 //! `N = (u - u_d)² + u (c2/m2)²` and `M = (u - u_1)² (u - u_2)² + u ℓ² (u - u_z)²`. `u_1 <= u_2` are the natural frequencies (of the real
 //! part of the determinant), `u_d = k2/m2` that of the damper alone and `u_p = k1/m1` that of the structure; `u_z` is where the
 //! imaginary part is zero, and `ℓ = c1/m1 + c2/m2 + c2/m1`. `u_d`, `u_p` and `u_z` lie between `u_1` and `u_2`. Without a damper
-//! `|X1|² = (P/m1)² / M` with `M = (u - u_p)² + u (c1/m1)²`: the same with 1 in the place of `N`, `u - u_2` and `u - u_z`.
+//! `|X1|² = (P/m1)² / M` with `M = (u - u_p)² + u (c1/m1)²`, which is the general form with `N`, `u - u_2` and `u - u_z` replaced by 1.
 
 use super::roots::{falls, product, sum, times};
 use crate::{Bare, Coupled};
 
-/// Roundings within which an end of a band lies on a natural frequency.
+/// Relative distance within which an end of a band counts as on a natural frequency.
 pub const ON_RESONANCE: f64 = 8.0 * f64::EPSILON;
 
-/// A place on the axis of `u`: `u`, `u - u_1` and `u - u_2`, of which the smaller difference is accurate however small it is.
+/// A point on the `u` axis: `u`, `u - u_1` and `u - u_2`. The smaller difference has full relative accuracy.
 #[derive(Clone, Copy, Debug)]
 pub struct Point {
     u: f64,
@@ -21,7 +21,7 @@ pub struct Point {
 }
 
 impl Point {
-    /// How far it lies above another.
+    /// `u` of this point minus `u` of another.
     pub fn past(&self, other: &Self) -> f64 {
         if self.past_lower.abs() + other.past_lower.abs() <= self.past_upper.abs() + other.past_upper.abs() {
             self.past_lower - other.past_lower
@@ -30,13 +30,13 @@ impl Point {
         }
     }
 
-    /// How far it is from the nearer natural frequency.
+    /// Distance in `u` to the nearer natural frequency.
     pub fn off_resonance(&self) -> f64 {
         self.past_lower.abs().min(self.past_upper.abs())
     }
 }
 
-/// Where the factors are zero.
+/// The zeros of the factors, with their constants.
 pub struct Factors {
     /// The unit of `u`, rad²/s².
     pub unit: f64,
@@ -57,7 +57,7 @@ pub struct Factors {
 }
 
 impl Factors {
-    /// Those of a structure without a damper.
+    /// The factors of a structure without a damper.
     pub fn of_bare(&Bare { m1, c1, k1, .. }: &Bare, unit: f64) -> Self {
         let natural = Point { u: k1 / m1 / unit, past_lower: 0.0, past_upper: 0.0 };
         let (primary, lower, upper, damper, in_phase) = (natural, natural, natural, natural, natural);
@@ -65,7 +65,7 @@ impl Factors {
         Self { unit, primary, lower, upper, damper, in_phase, loss: 0.0, drag, both: [1.0, 0.0], slope: 0.0 }
     }
 
-    /// Those of a structure with a damper.
+    /// The factors of a structure with a damper.
     pub fn new(system: &Coupled, unit: f64) -> Self {
         let Bare { m1, c1, k1, .. } = *system.bare();
         let (m2, k2, c2) = system.damper();
@@ -76,10 +76,10 @@ impl Factors {
         let [lower_d, upper_d] = about(primary - damper + s, s * damper);
         let [lower_p, upper_p] = about(damper - primary + s, s * primary);
         let upper = damper + upper_d;
-        // By Vieta, for a difference would lose digits.
+        // By Vieta: a difference would lose digits.
         let share = if upper > 0.0 { primary / upper } else { 0.0 };
         let lower = share * damper;
-        // The imaginary part at both, by sums of what the dampers take: it falls from one to the other.
+        // Sizes of the imaginary part at u_1 and u_2, by sums of terms not below zero; its signs there are opposite.
         let at_lower = rate_2 * share * (rate_1 * rate_2 / unit - lower_p) - rate_1 * lower_d;
         let at_upper = rate_2 * upper_p + back * upper + rate_1 * upper_d;
         let slope = rate_1 + rate_2 + back;
@@ -100,9 +100,9 @@ impl Factors {
         }
     }
 
-    /// The same with `N = |(m1 + m2) Q - m1 m2 ω²|² / (m1 m2)²` in the place of that of X1: of what accelerates both masses, `m1 X1 + m2 X2`. It is
-    /// the same polynomial with k2 and c2 larger by `1 + m2/m1`. Its zero is `u_d + s - s_0` with `s_0` the product of the rates, and by Vieta
-    /// `u_d + s - u_2 = u_1 - u_p`.
+    /// These factors with the `N` of `m1 X1 + m2 X2`, the inertia of both masses, in place of that of X1:
+    /// `|(m1 + m2) Q - m1 m2 ω²|² / (m1 m2)²`. It is the `N` of X1 with k2 and c2 larger by `1 + m2/m1`. Its zero is `u_d + s - s_0` with
+    /// `s_0` the product of the rates, and by Vieta `u_d + s - u_2 = u_1 - u_p`.
     #[must_use]
     pub fn of_both_masses(self) -> Self {
         let Self { unit, primary, upper, both: [share, product], .. } = self;
@@ -117,7 +117,7 @@ impl Factors {
         Self { damper, loss: self.loss * share * share, ..self }
     }
 
-    /// The end of a band, rad/s.
+    /// The point at an end of a band, rad/s.
     pub fn end(&self, omega: f64) -> Point {
         let u = omega * omega / self.unit;
         let past = |natural: &Point| u - natural.u;
@@ -129,12 +129,12 @@ impl Factors {
         Point { u, past_lower: past(&self.lower), past_upper: past(&self.upper) }
     }
 
-    /// Where a band is cut, in their order.
+    /// The points at which a band is cut, ascending.
     pub fn cuts(&self) -> [Point; 6] {
         let gap = self.upper.past_lower;
         let middle = Point { u: self.lower.u + 0.5 * gap, past_lower: 0.5 * gap, past_upper: -0.5 * gap };
         let mut cuts = [self.lower, self.damper, self.primary, self.in_phase, middle, self.upper];
-        // All lie between the natural frequencies but the damper's of both masses, which heavy damping brings below.
+        // All lie between the natural frequencies, except that heavy damping moves the damper's zero for both masses below them.
         let first = if self.damper.past_lower < 0.0 { 0 } else { 1 };
         for last in first + 1..5 {
             for i in (first + 1..=last).rev() {
@@ -146,7 +146,7 @@ impl Factors {
         cuts
     }
 
-    /// The stretch from `start` to `end`, in either direction, with no cut inside.
+    /// The piece from `start` to `end`, in either direction, with no cut inside.
     pub fn piece(&self, start: &Point, end: &Point) -> Piece {
         let ends = |zero: &Point| [start.past(zero), end.past(zero)];
         // A constant factor is 1 at both ends.
@@ -165,7 +165,7 @@ impl Factors {
     }
 }
 
-/// The roots of `x² - b x - c`, `c >= 0`, without a difference: one is not above zero, the other not below.
+/// The roots of `x² - b x - c`, `c >= 0`, without cancellation: the first is not above zero, the second not below.
 fn about(b: f64, c: f64) -> [f64; 2] {
     let far = 0.5 * b.abs() + (0.5 * b).hypot(c.sqrt());
     let near = if far > 0.0 { c / far } else { 0.0 };
@@ -182,8 +182,8 @@ pub struct Numerator {
     pub damper: bool,
 }
 
-/// A stretch on which no factor changes its sign; each has its values at both ends. Polynomials of `s`, from 0 at the start to 1 at
-/// the end, are kept as their coefficients of `(1-s)^(n-i) s^i`.
+/// A piece of a band on which no factor changes its sign, with the factors' values at both ends. Polynomials of `s`, from 0 at the start
+/// to 1 at the end, are stored as their coefficients of `(1-s)^(n-i) s^i`.
 pub struct Piece {
     /// The sign of `du/ds`. Slopes are divided by its size.
     forward: f64,
@@ -197,7 +197,7 @@ pub struct Piece {
     slope: f64,
 }
 
-/// The constant 1, as linear polynomial: what raises a degree.
+/// The constant 1 as a linear polynomial; multiplying by it raises the degree.
 const ONE: [f64; 2] = [1.0, 1.0];
 
 impl Piece {
@@ -259,7 +259,7 @@ impl Piece {
         [by * v0.max(v1 / 3.0).max(v2 / 3.0).max(v3), m0.min(m1 / 4.0).min(m2 / 6.0).min(m3 / 4.0).min(m4)]
     }
 
-    /// Visits every place where the slope of `V / M` falls through zero.
+    /// Visits every downward zero crossing of the slope of `V / M`.
     pub fn falls(&self, numerator: Numerator, visit: &mut impl FnMut(f64)) {
         // With V = u^j W the slope has the sign of W' M - W M', for j > 0 of (j W + u W') M - u W M', for j < 0 of u W' M - (|j| W M + u W M').
         let (v, v_slope) = self.numerator(numerator);
@@ -281,7 +281,7 @@ impl Piece {
     }
 }
 
-/// The Bernstein coefficients of a difference of polynomials that are kept by their coefficients of `(1-s)^(n-i) s^i`.
+/// The Bernstein coefficients of a difference of polynomials stored by their coefficients of `(1-s)^(n-i) s^i`.
 fn bernstein<const N: usize>(a: &[f64; N], b: &[f64; N]) -> [f64; N] {
     let mut choose = 1.0;
     std::array::from_fn(|i| {

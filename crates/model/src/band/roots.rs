@@ -1,15 +1,15 @@
-//! Where a polynomial falls through zero, by halving: on an interval its Bernstein coefficients change sign at least as often as it
-//! has roots, and if once, exactly once (Descartes' rule of signs; R. T. Farouki, The Bernstein polynomial basis, Comput. Aided
-//! Geom. Des. 29, 2012). Halving adds no sign changes, so of all intervals of one length at most three need another one.
+//! Downward zero crossings of a polynomial, by bisection: on an interval its Bernstein coefficients change sign at least as often as
+//! it has roots, and one change means exactly one root (Descartes' rule of signs; R. T. Farouki, The Bernstein polynomial basis, Comput.
+//! Aided Geom. Des. 29, 2012). Bisection adds no sign changes, so of all intervals of one length at most three need another one.
 
-/// Visits every place in `[0, 1]` where a polynomial, by its Bernstein coefficients, falls through zero: to rounding of its distance
-/// from 0, however small.
+/// Visits every downward zero crossing in `[0, 1]` of a polynomial given by its Bernstein coefficients, accurate to rounding relative
+/// to its distance from 0, however small.
 pub fn falls<const N: usize>(w: [f64; N], visit: &mut impl FnMut(f64)) {
     fall(w, [0.0, 1.0], visit);
 }
 
-/// Length of an interval, relative to its distance from 0, in which roots are not told apart: what has factors without zeros inside of
-/// it varies by less than rounding.
+/// Length of an interval, relative to its distance from 0, within which roots are not separated: a quantity whose factors have no zeros
+/// inside it varies by less than rounding.
 const SHORT: f64 = 4.0 * f64::EPSILON;
 
 fn fall<const N: usize>(w: [f64; N], [a, b]: [f64; 2], visit: &mut impl FnMut(f64)) {
@@ -43,10 +43,10 @@ fn fall<const N: usize>(w: [f64; N], [a, b]: [f64; 2], visit: &mut impl FnMut(f6
 fn root<const N: usize>(w: &[f64; N]) -> f64 {
     let degree = (N - 1) as f64;
     let (mut lower, mut upper) = (0.0, 1.0);
-    // A peak near 0 is a matter of the first two coefficients.
+    // Near 0 the first two coefficients determine the root.
     let first = w[0] / (degree * (w[0] - w[1]));
     let mut t = if first > 0.0 && first < 0.5 { first } else { 0.5 };
-    // Newton's steps take a handful; halving to the smallest number would take a thousand.
+    // Newton's method takes a handful of steps; bisection down to the smallest number would take a thousand.
     for _ in 0..1100 {
         let mut triangle = *w;
         for level in 1..N - 1 {
@@ -54,7 +54,7 @@ fn root<const N: usize>(w: &[f64; N]) -> f64 {
                 triangle[i] += t * (triangle[i + 1] - triangle[i]);
             }
         }
-        let slope = triangle[1] - triangle[0]; // its share of the degree
+        let slope = triangle[1] - triangle[0]; // the derivative over the degree
         let value = triangle[0] + t * slope;
         if value > 0.0 {
             lower = t;

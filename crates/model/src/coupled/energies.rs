@@ -125,7 +125,7 @@ impl Coupled {
         WallForces { net, slope, drag }
     }
 
-    /// Those of a damper that touches no wall.
+    /// [`WallForces`] of a damper that touches no wall.
     #[inline(always)]
     pub(super) fn no_wall_forces(&self) -> WallForces {
         WallForces { net: f64x4::ZERO, slope: f64x4::ZERO, drag: f64x4::splat(self.c2) }
@@ -144,7 +144,7 @@ impl Coupled {
         Side::BOTH.map(lost).iter().sum()
     }
 
-    /// The power that the damper's dashpot takes, W: `c2 (v2 - v1)²`.
+    /// The power that the damper's dashpot dissipates, W: `c2 (v2 - v1)²`.
     pub fn damper_loss(&self, y: &[f64; 4]) -> f64 {
         self.c2 * (y[3] - y[1]).powi(2)
     }
@@ -179,8 +179,8 @@ fn relative_position_rates_by(&[x1, v1, x2, v2]: &[f64x4; 4], accelerations: Acc
     [x2 - x1, v2 - v1, a2 - a1]
 }
 
-/// The net contact force on the damper, N, the sum of the slopes of both contact forces, N/m, and that of their slopes by the speed and of
-/// the dashpot's, N·s/m.
+/// The net contact force on the damper, N, the sum of both contact stiffnesses, N/m, and the sum of the damping coefficients of both
+/// contacts and the dashpot, N·s/m.
 #[derive(Clone, Copy)]
 pub(super) struct WallForces {
     pub net: f64x4,
@@ -188,15 +188,15 @@ pub(super) struct WallForces {
     pub drag: f64x4,
 }
 
-/// Of the structure and of the damper: the acceleration, the sum of all forces but its own spring's on the structure and of all
-/// forces on the damper, and the rates of these sums.
+/// For the structure and for the damper: the acceleration, the sum of the forces (on the structure without its own spring's), and the rate
+/// of this sum.
 pub(super) struct Accelerations {
     pub a: [f64x4; 2],
     pub force: [f64x4; 2],
     pub force_rate: [f64x4; 2],
 }
 
-/// Evaluates at one moment a formula that is written for moments side by side.
+/// Evaluates at one moment a formula that is written for four moments side by side.
 #[inline(always)]
 pub(super) fn at_one_moment<const N: usize, const K: usize>(
     excitation: Excitation,

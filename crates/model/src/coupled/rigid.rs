@@ -6,11 +6,11 @@ use crate::{Bare, Excitation, Parameter};
 use nalgebra::SMatrix;
 use wide::f64x4;
 
-/// Units in the last place by which a damper that a wall holds may be off it: those of the two positions.
+/// Distance from a wall, in roundings of the two positions, within which a damper is on it.
 const ON_WALL: f64 = 8.0;
 
 impl Coupled {
-    /// The restitution of rigid walls; none where the walls are Hertz's surfaces, or there are none.
+    /// The restitution of rigid walls; none with Hertz's surfaces or without walls.
     pub fn restitution(&self) -> Option<f64> {
         self.restitution
     }
@@ -28,7 +28,7 @@ impl Coupled {
         [x1, after, x2, after - e * closing]
     }
 
-    /// The derivative of the state after an impact by a parameter, the state before it held; zero by none.
+    /// The derivative of the state after an impact by a parameter, at a fixed state before it; zero for `None`.
     pub fn struck_by(&self, parameter: Option<Parameter>, &[_, v1, _, v2]: &[f64; 4]) -> [f64; 4] {
         let ([m1, m2], w, e) = (self.masses(), v2 - v1, self.restitution.unwrap_or(1.0));
         let m = m1 + m2;
@@ -48,13 +48,14 @@ impl Coupled {
         [x1, v, x1 + self.wall(side), v]
     }
 
-    /// Whether the damper rests on a wall, without a speed of its own.
+    /// Whether the damper rests on a wall, with no relative velocity.
     pub fn rests_on(&self, side: Side, y: &[f64; 4]) -> bool {
         let size = y[0].abs() + y[2].abs();
         y[1] == y[3] && self.indentation(y)[side as usize].abs() <= ON_WALL * f64::EPSILON * size
     }
 
-    /// The wall that holds the damper in a state under a force: it rests on it and is pressed on it. None of Hertz's surfaces.
+    /// The wall that holds the damper in a state under a force: the damper rests on it and is pressed on it. Always `None` for Hertz's
+    /// surfaces.
     #[inline]
     pub fn holding(&self, excitation: Excitation, y: &[f64; 4]) -> Option<Side> {
         let holds = |&side: &Side| self.rests_on(side, y) && self.held_force(side, excitation, y) >= 0.0;
@@ -83,7 +84,8 @@ impl Coupled {
     }
 
     /// `[weight, constant]` of the force between the wall and the damper that it holds, N: `weight a + constant` at the common acceleration
-    /// `a`, that of the base included. It is what spring and inertia ask for, and the wall can only push: the damper is held while it is not negative.
+    /// `a`, that of the base included. It balances spring and inertia. The wall can only push, so the damper is held while it is not
+    /// negative.
     pub fn holding_force_weights(&self, side: Side) -> [f64; 2] {
         let sign = -side.sign();
         [sign * self.m2, sign * self.k2 * (self.wall(side) - self.d)]
@@ -109,7 +111,7 @@ impl Coupled {
         (SMatrix::<f64, 4, 4>::from_row_slice(&rows), [0.0, input, 0.0, input])
     }
 
-    /// A bound on how fast that motion can change, 1/s, as [`Self::rate`].
+    /// [`Self::rate`] while a wall holds the damper, 1/s.
     pub fn held_rate(&self) -> f64 {
         self.joined().rate()
     }
@@ -131,8 +133,8 @@ impl Coupled {
         }
     }
 
-    /// The forces of the walls on the damper in a state under a force, N, none negative: Hertz's, or that of a rigid wall that holds it. Those
-    /// of an impact with a rigid wall are infinite for no time, and not among them.
+    /// The forces of the walls on the damper in a state under a force, N, none negative: Hertz's, or that of a rigid wall that holds it.
+    /// The impulses of impacts with a rigid wall are not included.
     pub fn wall_reactions(&self, excitation: Excitation, y: &[f64; 4]) -> [f64; 2] {
         let mut forces = self.contact_forces(y);
         if let Some(side) = self.holding(excitation, y) {
@@ -141,7 +143,7 @@ impl Coupled {
         forces
     }
 
-    /// The derivative of [`Self::held_acceleration`] by a parameter, the state and the force held, m/s² per unit.
+    /// The derivative of [`Self::held_acceleration`] by a parameter at a fixed state and force, m/s² per unit.
     pub fn held_acceleration_by(&self, parameter: Parameter, excitation: Excitation, y: &[f64; 4]) -> f64 {
         let m = self.joined().m1;
         match parameter {

@@ -1,4 +1,4 @@
-//! How a forcing stands in a study.
+//! How a forcing is written in a study.
 
 use super::start::Start;
 use crate::amplitude::Amplitude;
@@ -89,11 +89,11 @@ impl From<History> for InFile {
         let unit = |unit: Unit| (unit != of.units()[0]).then(|| unit.0.to_owned());
         let file = Self { of: Some(of), ..Self::default() };
         match course {
-            Course::Pulse(Pulse { shape, peak, unit: own, duration }) => Self {
+            Course::Pulse(Pulse { shape, peak, unit: given, duration }) => Self {
                 pulse: Some(shape),
                 peak: Some(peak),
                 duration: Some(duration),
-                unit: unit(own),
+                unit: unit(given),
                 ..file
             },
             Course::Made(made) => made_file(made.recipe(), unit(made.recipe().unit), file),
@@ -121,7 +121,7 @@ fn made_file(recipe: &Recipe, unit: Option<String>, file: InFile) -> InFile {
     }
 }
 
-/// Why what a file says is no forcing.
+/// Why the fields of a file do not describe a forcing.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum Refused {
     #[error(
@@ -155,7 +155,7 @@ impl InFile {
         }
     }
 
-    /// The first of the fields of pulses and records that is given and not among `known`.
+    /// The first given field of pulses and records that is not among `known`.
     pub(super) fn stray(&self, known: &[&str]) -> Option<&'static str> {
         let fields = [
             ("omega", self.omega.is_some()),
@@ -170,7 +170,7 @@ impl InFile {
         fields.into_iter().find(|(name, given)| *given && !known.contains(name)).map(|(name, _)| name)
     }
 
-    /// The unit that is given, if one is.
+    /// The given unit, if any.
     fn unit(&self, of: Of) -> Result<Option<Unit>, Refused> {
         let Some(given) = &self.unit else { return Ok(None) };
         let refused = || {
@@ -180,7 +180,7 @@ impl InFile {
         named(given, of.units()).map(Some).ok_or_else(refused)
     }
 
-    /// The fields that give something in time, of which one may stand there.
+    /// The given fields that define a time history, of which one is allowed.
     pub(super) fn histories(&self) -> impl Iterator<Item = &'static str> {
         let fields = [
             ("pulse", self.pulse.is_some()),
@@ -192,7 +192,7 @@ impl InFile {
         fields.into_iter().filter(|(_, given)| *given).map(|(name, _)| name)
     }
 
-    /// What is given in time, if it is.
+    /// The time history, if one is given.
     pub(super) fn history(&self) -> Result<Option<History>, Refused> {
         let Some(beside) = self.histories().next() else { return Ok(None) };
         let known: &[&str] = match (beside, self.pulse, &self.record) {
@@ -226,7 +226,7 @@ impl InFile {
         Ok(Some(History { of, course }))
     }
 
-    /// A record, read or not.
+    /// A record with samples, or of a file still to be read.
     fn read(&self, record: &record_file::InFile, of: Of, unit: Option<Unit>) -> Result<Record, Refused> {
         match record {
             record_file::InFile::Whole(whole) => Ok(whole.clone().record(of.units())?),

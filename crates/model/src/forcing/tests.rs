@@ -1,4 +1,4 @@
-//! How a forcing stands in a study.
+//! How a forcing is written in a study.
 
 use super::*;
 
@@ -30,7 +30,7 @@ fn contract_one_kind_of_forcing_and_what_it_needs() {
         let forcing = read(text).expect(text);
         assert_eq!(serde_json::to_string(&forcing).expect("JSON"), text);
     }
-    // Samples that were read from a file are written as the file, unless a study is to be whole.
+    // Samples read from a file are written as the file's name, unless the study is to be self-contained.
     let text =
         r#"{"record":{"file":"a.csv","unit":"kN","start":0.5,"step":0.1,"values":[1.0,-2.0]},"of":"force"}"#;
     let mut forcing = read(text).expect(text);
@@ -39,7 +39,7 @@ fn contract_one_kind_of_forcing_and_what_it_needs() {
     let (_, record) = forcing.record_mut().expect("a record");
     *record = record.whole();
     assert_eq!(serde_json::to_string(&forcing).expect("JSON"), text);
-    for (text, said) in [
+    for (text, expected) in [
         (
             r#"{"omega":6.28}"#,
             "give one of `P`, `imbalance`, `base`, `base_acceleration`, `pulse`, `record`, `harmonics`, `sweep` and `spectrum`, or `start` alone, not 0",
@@ -105,6 +105,6 @@ fn contract_one_kind_of_forcing_and_what_it_needs() {
         (r#"{"base":-1,"omega":1}"#, "-1 is not allowed here"),
     ] {
         let error = read(text).expect_err(text);
-        assert!(error.contains(said), "{error}");
+        assert!(error.contains(expected), "{error}");
     }
 }

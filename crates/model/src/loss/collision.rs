@@ -6,7 +6,7 @@
 /// `(1 - e) / (1 + e) = coth a - 1/a`, Langevin's function.
 pub(super) fn chi(e: f64) -> f64 {
     let ratio = (1.0 - e) / (1.0 + e);
-    // A close guess (A. Cohen, Rheologica Acta 30 (1991) 270), and where coth a is 1 to rounding the root itself.
+    // A close guess (A. Cohen, Rheologica Acta 30 (1991) 270); where coth a is 1 to rounding, the root itself.
     let mut a = ratio * (3.0 - ratio * ratio) / (1.0 - ratio * ratio);
     if e < 0.025 {
         a = 0.5 * (1.0 + e) / e;

@@ -11,15 +11,15 @@ use wide::f64x4;
 
 /// Terms of a polynomial.
 const TERMS: usize = 4 * few::TERMS;
-/// Where one polynomial ends and the next begins; where r bends one is halved, and its halves are.
+/// The ends of the first pieces; a piece on which one polynomial is not exact is halved recursively.
 const ENDS: [f64; 5] = [-1.0, -0.5, 0.0, 0.5, 1.0];
-/// How often one is halved at most.
+/// Maximum depth of halving.
 const HALVINGS: u32 = 12;
-/// A branch point beyond this is far.
+/// A branch point beyond this is taken to be here.
 const FAR: f64 = 3.0;
-/// What the last coefficients of an interpolant to rounding are below.
+/// Bound on the last coefficients of an interpolant that is exact to rounding.
 const ROUNDING: f64 = 1e-15;
-/// Polynomials that four numbers share at most, for which they are computed together.
+/// Maximum number of polynomials for which four numbers are evaluated together.
 const TOGETHER: usize = 4;
 
 /// `r(x)`.
@@ -42,18 +42,19 @@ struct Piece {
 }
 
 impl Remainder {
-    /// Of its values and its branch point. None where r bends too sharply for polynomials to be exact to rounding.
+    /// Interpolates r from its values and its branch point. None where r bends too sharply for polynomials exact to rounding.
     pub fn new(branch: f64, value: impl Fn(f64) -> f64) -> Option<Self> {
         let mut table = Self { starts: Vec::new(), pieces: Vec::new(), branch: FAR.min(branch) };
         ENDS.windows(2).all(|ends| table.fill([ends[0], ends[1]], HALVINGS, &value)).then_some(table)
     }
 
-    /// Adds the pieces between two ends; whether they are exact.
+    /// Adds the pieces between two ends; returns whether they are exact.
     fn fill(&mut self, [from, to]: [f64; 2], halvings: u32, value: &impl Fn(f64) -> f64) -> bool {
         let by_root = from >= 0.0;
         let ends = [from, to].map(|x| self.variable(by_root, x));
-        let of_own = |own: f64| value(if by_root { self.branch - own * own } else { own });
-        if let Some(piece) = Piece::new(by_root, ends, of_own) {
+        let of_variable =
+            |variable: f64| value(if by_root { self.branch - variable * variable } else { variable });
+        if let Some(piece) = Piece::new(by_root, ends, of_variable) {
             self.starts.push(from);
             self.pieces.push(piece);
             return true;
@@ -69,42 +70,42 @@ impl Remainder {
         if by_root { (self.branch - x).sqrt() } else { x }
     }
 
-    /// The number of the piece that holds for an x; the first, too, beyond lift-off.
+    /// The index of the piece at an x; the first one also beyond lift-off.
     #[inline(always)]
-    fn place(&self, x: f64) -> usize {
+    fn index(&self, x: f64) -> usize {
         self.starts.iter().skip(1).map(|start| usize::from(x >= *start)).sum()
     }
 
     /// r.
     #[inline]
     pub fn at(&self, x: f64) -> f64 {
-        let piece = &self.pieces[self.place(x)];
+        let piece = &self.pieces[self.index(x)];
         let t = (self.variable(piece.by_root, x) - piece.middle) * piece.scale;
         sum(&piece.coefficients, t)
     }
 
-    /// The same, bit by bit, of four x at once: of each polynomial that one of them needs.
+    /// [`Self::at`] for four x at once, with bitwise equal results: each polynomial that one of them needs.
     pub fn at_four(&self, x: f64x4) -> f64x4 {
-        let places = x.to_array().map(|x| self.place(x));
+        let places = x.to_array().map(|x| self.index(x));
         let (first, last) =
-            places.iter().fold((usize::MAX, 0), |(a, b), &place| (place.min(a), place.max(b)));
+            places.iter().fold((usize::MAX, 0), |(a, b), &index| (index.min(a), index.max(b)));
         if last - first >= TOGETHER {
             return f64x4::new(x.to_array().map(|x| self.at(x)));
         }
         let mut all = f64x4::ZERO;
-        for place in first..=last {
-            let Piece { coefficients, middle, scale, by_root } = &self.pieces[place];
+        for index in first..=last {
+            let Piece { coefficients, middle, scale, by_root } = &self.pieces[index];
             let variable = if *by_root { (f64x4::splat(self.branch) - x).sqrt() } else { x };
             let here = sum(coefficients, (variable - *middle) * *scale);
-            let start = f64x4::splat(self.starts[place]);
-            all = if place == first { here } else { x.simd_ge(start).select(here, all) };
+            let start = f64x4::splat(self.starts[index]);
+            all = if index == first { here } else { x.simd_ge(start).select(here, all) };
         }
         all
     }
 }
 
 impl Piece {
-    /// Of the values of its variable between two ends; none where it is not exact to rounding.
+    /// Interpolates values given by its variable between two ends; none if not exact to rounding.
     fn new(by_root: bool, [from, to]: [f64; 2], value: impl Fn(f64) -> f64) -> Option<Self> {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         let values: [f64; TERMS] = std::array::from_fn(|node| value(middle + half * cosine(1, node)));
@@ -121,7 +122,7 @@ impl Piece {
     }
 }
 
-/// `Σ c_k t^k` of a number or of four.
+/// `Σ c_k t^k` for one number or four.
 #[inline(always)]
 fn sum<T: Number>(pieces: &[[f64; few::TERMS]; 4], t: T) -> T {
     let [a, b, c, d] = pieces.each_ref().map(|few| polynomial(few, t));
@@ -130,14 +131,14 @@ fn sum<T: Number>(pieces: &[[f64; few::TERMS]; 4], t: T) -> T {
     (a + t8 * b) + (t8 * t8) * (c + t8 * d)
 }
 
-/// Chebyshev's polynomial of an order at a node; multiples of whole turns are left out exactly.
+/// A Chebyshev polynomial at a node, with exact reduction of the angle by whole turns.
 fn cosine(order: usize, node: usize) -> f64 {
     static COSINES: LazyLock<[f64; 4 * TERMS]> =
         LazyLock::new(|| std::array::from_fn(|part| (0.5 * PI * part as f64 / TERMS as f64).cos()));
     COSINES[(order * (2 * node + 1)) % (4 * TERMS)]
 }
 
-/// The coefficients of the powers in a sum of Chebyshev polynomials.
+/// Converts Chebyshev coefficients to those of powers.
 fn powers(chebyshev: &[f64; TERMS]) -> [f64; TERMS] {
     let (mut sum, mut before, mut now) = ([0.0; TERMS], [0.0; TERMS], [0.0; TERMS]);
     now[0] = 1.0;

@@ -38,13 +38,13 @@ pub struct Restoring {
     e: f64,
     /// dχ/de.
     chi_by_e: f64,
-    /// `ln(1 + χ)`, and `ln(1 - χ e)`, which 1 - χ e itself cannot tell where e is small.
+    /// `ln(1 + χ)` and `ln(1 - χ e)`, the latter without the cancellation of 1 - χ e at small e.
     logs: [f64; 2],
-    /// h without the equation for it.
+    /// The stage by polynomials instead of its equation.
     remainder: Option<Remainder>,
 }
 
-/// Where in an undisturbed collision a contact is.
+/// The stage of an undisturbed collision at which a contact is.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stage {
     /// ż/v, 1 at touch-down and -e at lift-off.
@@ -61,9 +61,9 @@ pub(crate) struct Stage {
 
 /// Below this χ the integrals over `[h, 1]` are series.
 const SMALL: f64 = 0.25;
-/// Terms of them: the first that is left out is below `SMALL^TERMS`.
+/// Terms of these series: the first neglected one is below `SMALL^TERMS`.
 const TERMS: i32 = 28;
-/// The least restitution with polynomials: below it the rounding of `G` itself, up to some 1e-15/e², shows in them.
+/// The least restitution with polynomials: below it they would show the rounding of `G`, up to some 1e-15/e².
 const LEAST: f64 = 0.002;
 /// How much beyond lift-off, as a share of w², a stage is computed by the polynomials of contacts.
 const BEYOND: f64 = 1e-3;
@@ -91,7 +91,7 @@ impl Restoring {
         Self { remainder, ..law }
     }
 
-    /// Where h as a function of x has its branch point, beyond touch-down: `D = 0` there. Far away where χ is small.
+    /// The branch point of h as a function of x, beyond touch-down: `D = 0` there. Infinite where χ is small.
     fn branch(&self) -> f64 {
         if self.chi < SMALL {
             return f64::INFINITY;
@@ -120,7 +120,7 @@ impl Restoring {
         (chi * (1.0 - h) - (self.logs[0] - log)) / (chi * chi)
     }
 
-    /// The stage with this ln f; v is left open.
+    /// The stage at this ln f, without v.
     fn at(&self, log: f64) -> Stage {
         let f = log.exp();
         let h = if self.chi < SMALL { log.exp_m1() } else { f - 1.0 } / self.chi;
@@ -132,7 +132,7 @@ impl Restoring {
         Stage { h, v: f64::NAN, f, g, d: 2.0 * f * g + h * h }
     }
 
-    /// The stage with this h between -e and 1; v is left open.
+    /// The stage at this h between -e and 1, without v.
     pub(crate) fn stage_at(&self, h: f64) -> Stage {
         let log = (self.chi * h).ln_1p();
         if h <= -self.e || log <= self.logs[1] {
@@ -147,7 +147,7 @@ impl Restoring {
         self.e
     }
 
-    /// Whether the factor is computed by polynomials instead of an iteration: of restitutions of 0.002 and above.
+    /// Whether the factor is computed by polynomials instead of an iteration: for restitutions of 0.002 and above.
     pub fn is_tabulated(&self) -> bool {
         self.remainder.is_some()
     }
@@ -164,7 +164,7 @@ impl Restoring {
         }
     }
 
-    /// The same, bit by bit, of four contacts at once.
+    /// [`Self::push`] of four contacts at once, with bitwise equal results.
     #[inline]
     pub fn push_of_four(&self, s: f64x4, w: f64x4) -> f64x4 {
         let square = w * w;
@@ -198,8 +198,8 @@ impl Restoring {
         Stage { h, v: root / r, f, g, d: 2.0 * f * g + h * h }
     }
 
-    /// The same from its equation: the root of `φ = w² G - h² S` on the side of the sign of w, by Halley's iteration on ln f, kept inside by
-    /// bisection.
+    /// The stage from its equation: the root of `φ = w² G - h² S` on the side of the sign of w, by Halley's iteration on ln f, safeguarded
+    /// by bisection.
     fn solved(&self, s: f64, w: f64) -> Stage {
         let Self { chi, e, logs, .. } = *self;
         if w == 0.0 {
@@ -232,12 +232,12 @@ impl Restoring {
             let step = next - log;
             log = next;
             stage = self.at(log);
-            // The next step would be of the order of the cube of this one.
+            // Convergence is cubic.
             if step.abs() <= 1e-6 * log.abs() || value == 0.0 {
                 break;
             }
         }
-        // Of both ways to v the one that keeps its digits.
+        // Of the two formulas for v, the one without cancellation.
         let v = if stage.h.abs() > 0.5 * e { w / stage.h } else { (s / stage.g).sqrt() };
         Stage { v, ..stage }
     }
@@ -277,7 +277,7 @@ impl Restoring {
         self.chi_by_e * (stage.h + self.chi * self.h_by_chi(stage))
     }
 
-    /// `dh/dχ` at one S and ż: `h f / D ∂G/∂χ`, with `∂G/∂χ = -∫_h^1 s² / (1 + χ s)² ds`.
+    /// `dh/dχ` at fixed S and ż: `h f / D ∂G/∂χ`, with `∂G/∂χ = -∫_h^1 s² / (1 + χ s)² ds`.
     fn h_by_chi(&self, Stage { h, f, d, .. }: Stage) -> f64 {
         let chi = self.chi;
         // f ∂G/∂χ: the integral itself grows without bound where f vanishes.
@@ -291,7 +291,7 @@ impl Restoring {
         } else {
             // s - 2 ln(1 + χ s) / χ - 1 / (χ (1 + χ s)), at 1 and at h
             let upper = 1.0 - 2.0 * self.logs[0] / chi - 1.0 / (chi * (1.0 + chi));
-            // f ln f, which vanishes with f: of e below 0.0013 f is zero to rounding at lift-off.
+            // f ln f, which vanishes with f: for e below 0.0013, f is zero to rounding at lift-off.
             let entropy = if f > 0.0 { f * f.ln() } else { 0.0 };
             let lower = f * h - 2.0 * entropy / chi - 1.0 / chi;
             -(f * upper - lower) / (chi * chi)
@@ -306,7 +306,7 @@ mod tests {
 
     const ALL: [f64; 10] = [1e-3, 0.01, 0.05, 0.2, 0.5, 0.7, 0.9, 0.95, 0.999, 1.0 - 1e-9];
 
-    /// Along the undisturbed collision, which the equation of h describes in time, v is the speed at touch-down.
+    /// Along the undisturbed collision, integrated by the equation of h, v is the speed at touch-down.
     #[test]
     fn exact_the_stages_of_an_undisturbed_collision() {
         for e in ALL {
@@ -328,7 +328,7 @@ mod tests {
         }
     }
 
-    /// The polynomials beside the equation that they replace, up to where they are not used any more.
+    /// Compares the polynomials with the equation that they replace, up to the end of their range.
     #[test]
     fn exact_polynomials_in_place_of_the_equation() {
         let every = (0..60).map(|i| LEAST.powf(1.0 - f64::from(i) / 60.0));
@@ -341,7 +341,7 @@ mod tests {
                 let [a, b] = [law.stage(s, x), law.solved(s, x)];
                 worst = worst.max((a.h - b.h).abs()).max((a.f - b.f).abs()).max((a.v - b.v).abs());
             }
-            // The logarithm in G cancels to a share of e².
+            // The logarithm in G cancels to a relative size of e².
             let allowed = if e < 0.28 { 1e-15 / (e * e) } else { 1e-14 };
             assert!(law.is_tabulated() && worst < allowed, "{e}: {worst:e}");
             for x in [-0.99, -0.8, -0.51, -0.2, 0.1, 0.45, 0.55, 0.999] {
@@ -354,7 +354,7 @@ mod tests {
         }
     }
 
-    /// The strongest loss: the factor vanishes at lift-off, and its derivatives stay numbers.
+    /// The strongest loss: the factor vanishes at lift-off, and its derivatives stay finite.
     #[test]
     fn regress_derivatives_where_the_force_vanishes_are_finite() {
         let law = Restoring::new(1e-3);
@@ -364,7 +364,7 @@ mod tests {
         }
     }
 
-    /// Every derivative of the factor beside differences.
+    /// Compares every derivative of the factor with differences.
     #[test]
     fn exact_derivatives_of_the_factor() {
         for e in [0.05, 0.3, 0.7, 0.92, 0.99] {

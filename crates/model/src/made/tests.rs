@@ -1,4 +1,4 @@
-//! What recipes become.
+//! The samples of recipes.
 
 use super::*;
 
@@ -14,7 +14,7 @@ fn not_negative(value: f64) -> NonNegative {
     NonNegative::new(value).expect("not below 0")
 }
 
-/// The force of straight lines at `t`.
+/// The piecewise linear force at `t`.
 fn at(samples: &Samples, t: f64) -> f64 {
     let stretch = samples.stretch(t);
     stretch.begin[0] - stretch.begin[1] * (t - stretch.from)
@@ -38,7 +38,8 @@ fn forms() -> [(Recipe, Force); 3] {
     ]
 }
 
-/// Between samples and at them a force is off by no more than what is said; every piece has its impulse, to the fifth order of its length.
+/// Between samples and at them the error of a force is within its bound; every piece has the impulse of the force, to the fifth order of
+/// its length.
 #[test]
 fn exact_straight_lines_stay_near_a_formula_and_keep_its_impulse() {
     for (recipe, force) in forms() {
@@ -56,7 +57,7 @@ fn exact_straight_lines_stay_near_a_formula_and_keep_its_impulse() {
                 let nodes: [f64; 5] = std::array::from_fn(|k| force(from + 0.25 * k as f64 * h));
                 let impulse = h / 12.0 * (nodes[0] + 4.0 * (nodes[1] + nodes[3]) + 2.0 * nodes[2] + nodes[4]);
                 let linear = 0.5 * h * (samples.value(i) + samples.value(i + 1));
-                // f'''' h⁵ / 240 is left of the correction; 12 rad/s is above every frequency.
+                // The error after the correction is f'''' h⁵ / 240; 12 rad/s is above every frequency.
                 let allowed = size * (12f64.powi(4) * h.powi(5) / 100.0 + 1e-14 * h);
                 assert!((linear - impulse).abs() < allowed, "{i}: {linear} {impulse} {allowed}");
                 for k in 0..8 {
@@ -96,7 +97,7 @@ fn invariant_a_random_force_has_its_spectrum() {
         Form::Spectrum(spectrum) => spectrum.drawn(200.0).map(|[a, ..]| 0.5 * a * a).sum::<f64>(),
         _ => f64::NAN,
     };
-    // The rule of the middles leaves an error of second order at the bend of the table alone.
+    // The midpoint rule has an error of second order only at the kink of the table.
     assert!((harmonics(draw(1, 200.0)) / variance - 1.0).abs() < 1e-3);
 }
 
@@ -124,7 +125,7 @@ fn contract_what_makes_no_force_says_why() {
     let many = refused(Form::VersedSine(finite(1.0)), 1.0, Some(1e-9));
     assert!(many.starts_with("`duration`: 1 s are not allowed here"), "{many}");
     assert!(refused(spectrum(&[1.0, 1e6], &[1.0, 1.0]), 100.0, None).starts_with("`duration`: 100 s"));
-    // A force of nothing, or that does not change, has samples, too.
+    // A zero force, or a constant one, has samples, too.
     for amplitude in [0.0, 3.0] {
         let constant =
             Harmonic { amplitude: finite(amplitude), omega: not_negative(0.0), phase: Finite::default() };

@@ -7,7 +7,7 @@ use crate::{
 };
 use schemars::{Schema, json_schema};
 
-/// Why a scene has no such parameter.
+/// Why a scene lacks a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Absent {
     /// There is no damper.
@@ -19,13 +19,13 @@ pub enum Absent {
     /// The walls are rigid: they have a restitution alone.
     #[error("the walls are rigid: `restitution` is all that they have")]
     Rigid,
-    /// Another number gives the forcing.
+    /// The forcing is given by another parameter.
     #[error("the forcing of the scene is given by `{0}`")]
     Forcing(&'static str),
-    /// Contacts with either wall have a loss of their own.
+    /// Each wall has its own loss.
     #[error("each wall has its own loss: give `loss` alone, for both")]
     Losses,
-    /// Another number gives the loss of its contacts.
+    /// The loss of the contact is given by another parameter.
     #[error("the loss of the contact is given by `{0}`")]
     Loss(&'static str),
 }
@@ -80,7 +80,7 @@ impl Place<'_> {
 impl Parameter {
     /// Where it stands in a scene.
     fn place(self, scene: &mut Scene) -> Result<Place<'_>, Absent> {
-        let (has, has_frequency) = (scene.forcing.given_by(), scene.forcing.source.is_harmonic());
+        let (given_by, has_frequency) = (scene.forcing.given_by(), scene.forcing.source.is_harmonic());
         let Scene { primary, forcing, damper } = scene;
         let place = match (self, &mut forcing.source) {
             (Self::M1, _) => Place::Positive(&mut primary.mass),
@@ -89,7 +89,7 @@ impl Parameter {
             (one, Source::Harmonic(of, size)) if one == of.parameter() => Place::NonNegative(size),
             (Self::Omega, _) if has_frequency => Place::NonNegative(&mut forcing.frequency),
             (one, _) if one.is_frequency() || Self::AMPLITUDES.contains(&one) => {
-                return Err(Absent::Forcing(has));
+                return Err(Absent::Forcing(given_by));
             }
             _ => return self.place_in(damper.as_mut().ok_or(Absent::NoDamper)?),
         };
@@ -137,7 +137,7 @@ impl Parameter {
         Ok(place)
     }
 
-    /// Where it stands in the loss of a contact. One that loses nothing may be given either number.
+    /// Where it stands in the loss of a contact. A contact without loss accepts either parameter.
     fn place_in_loss(self, loss: &mut Loss) -> Result<Place<'_>, Absent> {
         if loss.is_none() {
             *loss = match self {
@@ -195,7 +195,7 @@ impl Parameter {
         Ok(())
     }
 
-    /// Whether its value must be above zero, of those that a search may vary.
+    /// Whether a value of one of [`Self::VARIED`] must be above zero.
     const fn is_positive(self) -> bool {
         matches!(self, Self::M2 | Self::R)
     }
@@ -221,7 +221,7 @@ impl Parameter {
         }
     }
 
-    /// The scene with this parameter at `value`, in its SI unit; as it is where it has no such parameter.
+    /// The scene with this parameter at `value`, in its SI unit; unchanged if it has no such parameter.
     ///
     /// # Errors
     /// The value is out of the parameter's range.
@@ -234,10 +234,10 @@ impl Parameter {
 }
 
 impl Forcing {
-    /// The field that gives it in a study.
+    /// The field of a study that defines this forcing.
     pub fn given_by(&self) -> &'static str {
         match (self.amplitude(), self.source) {
-            (Some((own, _)), _) => own.symbol(),
+            (Some((parameter, _)), _) => parameter.symbol(),
             (None, Source::History(history)) => history.course.given_by(),
             _ => "start",
         }

@@ -1,15 +1,15 @@
 //! Whether times are equidistant.
 
-/// By how much of their distance samples may be off equal distances and still count as equidistant: what rounding to decimals leaves.
+/// Relative tolerance for the distances of equidistant samples: room for times rounded to decimals.
 const EVEN: f64 = 1e-9;
 
-/// Whether times that come one by one are equidistant. So a file of such samples is read without keeping their times.
+/// Tests one by one whether times are equidistant, so that a file of such samples is read without storing their times.
 #[derive(Clone, Copy, Debug)]
 pub struct Spacing {
     count: usize,
     first: f64,
     last: f64,
-    /// Between these the distance of the samples lies.
+    /// The distances that fit all times so far.
     range: [f64; 2],
 }
 
@@ -20,7 +20,7 @@ impl Default for Spacing {
 }
 
 impl Spacing {
-    /// Takes the next time, s. Whether some distance still fits all, each to [`EVEN`] of it and to the rounding of the time.
+    /// Adds the next time, s. Returns whether some distance still fits all, each to [`EVEN`] of it and to the rounding of the time.
     pub fn push(&mut self, t: f64) -> bool {
         if self.count == 0 {
             self.first = t;

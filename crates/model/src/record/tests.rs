@@ -1,4 +1,4 @@
-//! Samples, and what is made of them.
+//! Samples and their transforms.
 
 use super::*;
 
@@ -21,7 +21,7 @@ fn exact_a_record_is_linear_between_its_samples_and_nothing_outside() {
     }
 }
 
-/// Times are equidistant to a billionth of their distance and to their own rounding, however many there are.
+/// Times are equidistant if they are so to a billionth of their distance and to their rounding, however many there are.
 #[test]
 fn exact_equidistant_times_are_found_as_they_come() {
     fn even(mut times: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
@@ -57,7 +57,7 @@ fn exact_the_time_of_a_sample_begins_its_stretch() {
     }
 }
 
-/// Scaled, of the other sign and of half the samples it is one table, and the same as samples of their own.
+/// Scaled, reversed or with half the samples, a record shares one table, and equals separately stored samples.
 #[test]
 fn exact_scaled_and_coarser_samples_are_views_of_one_table() {
     let own = |times: &[f64], values: &[f64]| Samples::at(times.to_vec(), values.to_vec()).expect("a record");

@@ -20,21 +20,21 @@ pub type Growth<const K: usize> = [[f64; K]; 4];
 pub struct OverContact {
     /// Their sizes, m and m/s.
     pub most: [f64; 4],
-    /// Those of their rates by all forces but Hertz's, m/s and m/s².
+    /// Sizes of their rates by all forces but Hertz's, m/s and m/s².
     pub beside: [f64; 4],
     /// `∫ κ q³ dt`, m/s: Hertz's impulse.
     pub impulse: f64,
     /// `q`, √m.
     depth: f64,
-    /// A bound on the least v of a restitution that is the same at every speed, m/s; it says nothing unless it is positive.
+    /// A lower bound on v of a restitution that is the same at every speed, m/s; of use only if positive.
     slowest: f64,
-    /// How long it takes, s.
+    /// Duration of the contact, s.
     pub duration: f64,
     /// What the force adds to the acceleration of the structure, m/s².
     excitation: f64,
 }
 
-/// Series with every term by its size: of the numbers of [`Growth`], of `a1` and of `dw/dt`.
+/// Series with every term replaced by its size: of the numbers of [`Growth`], of `a1` and of `dw/dt`.
 struct Series<const K: usize> {
     growth: Growth<K>,
     a1: [f64; K],
@@ -48,11 +48,11 @@ struct Bounds<'a> {
     state: [f64; 4],
     /// The least q, where the speed into the wall follows the forces.
     shallowest: f64,
-    /// On those of `a1` and `dw/dt`, where they are known better than by the sizes of the forces, which hold each other where a wall holds the damper.
+    /// On the sizes of `a1` and `dw/dt`, where known better than by the sizes of the forces, which balance where a wall holds the damper.
     rates: [f64; 2],
     /// On the force, N.
     force: f64,
-    /// Of a restitution that is the same at every speed.
+    /// On the stages of a restitution that is the same at every speed.
     stages: Option<Stages<'a>>,
 }
 
@@ -74,15 +74,15 @@ impl RegularisedContact {
         })
     }
 
-    /// Bounds on the Taylor coefficients in `θ` anywhere on a piece of the contact that goes so far from the states at its ends; infinite if it is
-    /// too long for the proof. In the box about them each coefficient follows from those before it by the equations, with all terms taken as
+    /// Bounds on the Taylor coefficients in `θ` anywhere on a piece of the contact, from its [`Self::change`]; infinite if it is too long
+    /// for the proof. In the box of the change each coefficient follows from those before it by the equations, with all terms taken as
     /// positive.
     pub fn growth(&self, ends: [&RegularisedState; 2], change: &Option<Change>) -> Growth<ORDERS> {
         let series = |change| self.series::<ORDERS, false>(self.bounds_within(change, ends)).growth;
         change.as_ref().map_or([[f64::INFINITY; ORDERS]; 4], series)
     }
 
-    /// [`Self::growth`], and the same of the rates of its four numbers in *time*: of `v1`, `a1`, `w` and `dw/dt`.
+    /// [`Self::growth`], and such bounds on the rates of its four numbers in *time*: `v1`, `a1`, `w` and `dw/dt`.
     pub fn growth_of_rates(
         &self,
         ends: [&RegularisedState; 2],
@@ -96,7 +96,7 @@ impl RegularisedContact {
         [growth, [v1, a1, w, rate]]
     }
 
-    /// Bounds that follow from how far the piece goes from the states at its ends.
+    /// Bounds on a piece from its [`Change`].
     fn bounds_within(&self, change: &Change, [from, to]: [&RegularisedState; 2]) -> Bounds<'_> {
         let [[x1, _], [v1, _], _, [w, of_w]] = change.states;
         let [_, [a1, _], _, [rate, _]] = change.rates;
@@ -133,7 +133,7 @@ impl RegularisedContact {
                     return None;
                 }
             }
-            // Once they grow faster and faster there is no end.
+            // Once the increments grow, the iteration diverges.
             let by = [0, 1].map(|i| reach[i] - bounds.state[i]);
             if by[0] > farther[0] && by[1] > farther[1] {
                 break;
@@ -222,7 +222,7 @@ impl RegularisedContact {
     /// `ŵ`, which is `q0 (ŵ/w0)^0.4`, and Hertz's impulse below `w0 + ŵ + G t`. The change of `v1` follows from that. The speeds are
     /// guessed first, and the proof holds if the bounds confirm the guess.
     ///
-    /// A loss only takes energy away, so that all this is as without it. With the same restitution at every speed `w = v h` with `|h| <= 1` and
+    /// A loss only removes energy, so all this still holds. With the same restitution at every speed `w = v h` with `|h| <= 1` and
     /// `dv/dt = A h / D`, where `|h|/D <= 1/e` (for `|h| > e` as `D >= h²`, else as `D >= e²`): v stays within `G t / e` of w0.
     pub fn over_contact(
         &self,
@@ -244,19 +244,19 @@ impl RegularisedContact {
             (most, [v, on_primary, w, apart])
         };
         let impulse = |w: f64, apart: f64| w0 + w + apart * duration;
-        let follows = |guess: [f64; 2]| {
+        let implied = |guess: [f64; 2]| {
             let (_, [_, on_primary, _, apart]) = within(guess);
             let reached = w0 + 2.0 * apart * duration;
             [reached, v1 + share * impulse(reached, apart) + on_primary * duration]
         };
         let mut guess = [1.5 * w0, v1 + 3.0 * w0];
-        let mut speeds = follows(guess);
+        let mut speeds = implied(guess);
         for _ in 0..3 {
             if speeds[0] <= guess[0] && speeds[1] <= guess[1] {
                 break;
             }
             guess = speeds.map(|bound| 1.5 * bound);
-            speeds = follows(guess);
+            speeds = implied(guess);
         }
         let [w, v] = speeds;
         // NaN is no proof.

@@ -21,22 +21,22 @@ pub struct Following {
     pub acceleration: [f64; 3],
 }
 
-/// Approximations of [`Following`]: the error of each is `ρ/Λ` times that of the last.
+/// Iterations for [`Following`]: each multiplies the error by `ρ/Λ`.
 const PASSES: usize = 3;
 
 impl RegularisedContact {
-    /// Lets the speed into the wall follow the forces, or not.
+    /// Sets whether the speed into the wall follows the forces.
     pub fn set_overdamped(&mut self, follows: bool) {
         self.overdamped = follows;
     }
 
-    /// Whether it follows them.
+    /// Whether the speed into the wall follows the forces.
     pub fn is_overdamped(&self) -> bool {
         self.overdamped
     }
 
-    /// What the equation of a speed that follows the forces leaves out in a state, relative to the sum of the sizes of the forces between the
-    /// bodies. Infinite or NaN at the wall, of contacts that lose energy, and under forces that do not turn.
+    /// Truncation error of the speed that follows the forces, relative to the sum of the sizes of the forces between the bodies. Infinite
+    /// or NaN at the wall, for contacts that lose energy, and under forces linear in time.
     ///
     /// A derivative of `g` adds the rate `ρ`; one of Hertz's force adds its slope `s Λ`, and then `u`, as `z` is in the denominator:
     /// `d³z^(3/2)/dt³ = 3/2 √z (w'' + 3/2 w' u - 1/4 w u²)`.
@@ -56,7 +56,7 @@ impl RegularisedContact {
         1.5 * self.hertz[body] * q + self.spring[body]
     }
 
-    /// The speed into the wall that follows the forces, whatever that of the state is.
+    /// The speed into the wall that follows the forces; that of the state is not used.
     pub fn following(&self, &[q, _, x1, v1, t]: &RegularisedState) -> Following {
         let (z, [_, p1, p2]) = (q * q, self.primary);
         let (cube, stretch, bend) = (z * q, z + self.stretch, 0.75 / q);

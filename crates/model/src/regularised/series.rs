@@ -5,13 +5,13 @@ use super::{RegularisedContact, RegularisedState};
 use crate::Excitation;
 use wide::f64x4;
 
-/// The most terms of a series.
+/// Maximum number of terms of a series.
 const MOST: usize = 28;
 
-/// Taylor coefficients in `θ` about a state in contact, in units of a length of which the motion sets the size: powers of others would overflow.
+/// Taylor coefficients in `θ` about a state in contact, in a unit scaled to the motion: powers of a fixed unit would overflow.
 #[derive(Clone, Debug)]
 pub struct ContactSeries {
-    /// How many there are of each: even. Beyond them all are zero.
+    /// The number of terms of each series, even; all later ones are zero.
     terms: usize,
     /// The unit, s/√m.
     unit: f64,
@@ -28,7 +28,7 @@ const DRIVING: usize = 0;
 const FORCED: usize = 1;
 const CARRIED: usize = 2;
 
-/// What a series says of a moment.
+/// A series evaluated at one moment.
 pub struct SeriesMoment {
     /// The state.
     pub state: RegularisedState,
@@ -37,7 +37,7 @@ pub struct SeriesMoment {
 }
 
 impl ContactSeries {
-    /// Room for the fewest terms of which the last adds less than a `share` to an oscillation that goes on for so many radians.
+    /// Room for the fewest terms of which the last adds less than `share` to an oscillation over `turn` radians.
     pub fn for_turn(turn: f64, share: f64) -> Self {
         let mut last = turn;
         let mut terms = 2;
@@ -59,7 +59,7 @@ impl ContactSeries {
         self.terms
     }
 
-    /// Sets it to the series about a state under an excitation (N), in units of `unit` (s/√m).
+    /// Expands the series about a state under an excitation (N), in units of `unit` (s/√m).
     pub fn expand(
         &mut self,
         equations: &RegularisedContact,
@@ -117,12 +117,12 @@ impl ContactSeries {
         even + odd * theta
     }
 
-    /// Terms of `q`, in that unit.
+    /// Terms of `q`, in the unit of `θ`.
     pub fn root(&self) -> [f64; MOST] {
         self.driving.map(|terms| terms.to_array()[0])
     }
 
-    /// The length (s/√m), at most `most`, to which both of the last terms of `q` (√m), `w` and `v1` (m/s) stay below these sizes.
+    /// The length (s/√m), at most `most`, over which the last two terms of `q` (√m), `w` and `v1` (m/s) stay below these sizes.
     pub fn reach(&self, [q, w, v1]: [f64; 3], most: f64) -> f64 {
         let share = |k: usize| {
             let [of_q, of_v1, ..] = self.driving[k].to_array();
@@ -136,7 +136,7 @@ impl ContactSeries {
         self.unit * [self.terms - 2, self.terms - 1].into_iter().fold(most / self.unit, within)
     }
 
-    /// Bounds on the first Taylor coefficients in `θ`, of all series, anywhere in the first `length` (s/√m) of it: each term by its size.
+    /// Bounds on the first `K` Taylor coefficients in `θ` of all series anywhere in their first `length` (s/√m), by the sizes of all terms.
     pub fn bounds<const K: usize>(&self, length: f64) -> [[f64x4; K]; 3] {
         [&self.driving, &self.forced, &self.carried].map(|series| {
             let (mut terms, length) = (series.map(f64x4::abs), length / self.unit);
@@ -152,14 +152,14 @@ impl ContactSeries {
 }
 
 impl RegularisedContact {
-    /// By how much the rate of the speed into the wall at a moment of a series is not that of the equations, m/s².
+    /// The residual of the series at a moment: the error of its rate of the speed into the wall against the equations, m/s².
     pub fn defect(&self, series: &ContactSeries, theta: f64, moment: &SeriesMoment) -> f64 {
         let [q, w, x1, v1, _] = moment.state;
         let [expected, _] = self.balance(q * q * q, [q * q + self.stretch, w, x1, v1], moment.excitation[0]);
         (series.sum(&series.forced, theta).to_array()[1] - expected).abs()
     }
 
-    /// Bounds over a piece of a series, `h` of it between two of its states, from those of [`ContactSeries::bounds`].
+    /// The [`Change`] over a piece of a series, of length `h` between two of its states, from [`ContactSeries::bounds`].
     pub fn change_in_series(
         &self,
         [driving, forced, carried]: &[[f64x4; 2]; 3],
@@ -168,7 +168,7 @@ impl RegularisedContact {
     ) -> Change {
         let [[_, [q, v1, cos, _]], [[_, rate, a1, _], [z, by_rate, by_a1, cube]], [_, [x1, w, ..]]] =
             [driving, forced, carried].map(|bounds| bounds.map(f64x4::to_array));
-        // No number is farther from the nearer state than half of the piece at its fastest leads.
+        // No number departs from the nearer state by more than half of the piece at its greatest rate.
         let within = |at: &dyn Fn(&RegularisedState) -> f64, slope: f64| {
             let of = 0.5 * h * slope;
             [at(from).abs().max(at(to).abs()) + of, of]
@@ -187,7 +187,7 @@ impl RegularisedContact {
         }
     }
 
-    /// [`RegularisedContact::growth_of_rates`] over a series, from those of [`ContactSeries::bounds`].
+    /// [`RegularisedContact::growth_of_rates`] over a series, from [`ContactSeries::bounds`].
     pub fn growth_in_series(&self, bounds: &[[f64x4; ORDERS]; 3]) -> [Growth<ORDERS>; 2] {
         let of = |series: usize, lane: usize| bounds[series].map(|bounds| bounds.to_array()[lane]);
         let (x1, v1, w) = (of(CARRIED, 0), of(DRIVING, 1), of(CARRIED, 1));

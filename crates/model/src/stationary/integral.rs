@@ -33,12 +33,12 @@ const GAUSS: [f64; 8] = [
     0.0,
 ];
 
-/// Most pieces: an integral that needs more has no bound.
+/// Maximum number of pieces: an integral that needs more is taken to diverge.
 const MOST: usize = 4000;
-/// Tolerances below are those of rounding.
+/// Smallest tolerance: below it rounding dominates.
 const LEAST: f64 = 1e-12;
 
-/// A piece with its integrals and the differences of both rules.
+/// A piece with its integrals and the differences between both rules.
 struct Piece<const N: usize> {
     ends: [f64; 2],
     values: [f64; N],
@@ -72,8 +72,8 @@ fn sum<const N: usize>(pieces: &[Piece<N>], of: impl Fn(&Piece<N>) -> &[f64; N])
     std::array::from_fn(|k| pieces.iter().map(|piece| of(piece)[k]).sum())
 }
 
-/// The integrals over the range of the nodes, at which pieces begin, of functions that are not negative; with the largest difference of both
-/// rules as a share of its integral, at most `tolerance`. None where that takes too many pieces.
+/// Integrals of non-negative functions over the range of `nodes`, which separate the first pieces, and the largest relative difference of
+/// both rules, at most `tolerance`. None where that takes too many pieces.
 pub(super) fn integral<const N: usize>(
     of: impl Fn(f64) -> [f64; N],
     nodes: &[f64],

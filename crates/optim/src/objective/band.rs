@@ -25,10 +25,10 @@ impl Band {
 
 /// Most evaluations in the search of one peak. A smooth one needs four or five.
 const REFINEMENTS: usize = 11;
-/// A search ends after so many evaluations if what it has found by then is below the largest sample by more than this share.
+/// A search ends after the first number of evaluations if its best is below the largest sample by more than the second, a share.
 const FEW: usize = 2;
 const HOPELESS: f64 = 0.4;
-/// A search ends once its parabola promises no more than this share.
+/// A search ends once the predicted gain of its parabola is below this share.
 const GAIN: f64 = 1e-13;
 
 /// Some quantities at a frequency; cutoffs apply to the first.
@@ -39,9 +39,9 @@ struct Sample<const N: usize> {
 }
 
 /// The largest of `value(omega)` over `band`: of the samples, and of a search between the neighbours of every sample that is not
-/// below them, which is short where it comes to nothing near the largest sample. Samples and searches are shared among the threads of the current rayon pool; the result is the same at any number of
-/// them. It is a lower bound: a peak between samples that none of them shows is missed. Samples are taken in groups, each spread
-/// over the band; once one of a group is above `cutoff`, the largest sample so far is the answer.
+/// below them, which ends early if it stays well below the largest sample. Samples and searches are shared among the threads of the current
+/// rayon pool; the result is the same at any number of them. It is a lower bound: a peak that shows in no sample is missed. Samples are
+/// taken in groups, each spread over the band; once one of a group is above `cutoff`, the largest sample so far is returned.
 ///
 /// # Errors
 /// The first failure in the order of the frequencies, samples before searches, of the groups that were taken.
@@ -54,12 +54,12 @@ pub fn worst_over<E: Send + Sync>(
     Ok(worst)
 }
 
-/// The largest of each of some quantities over a band, as [`worst_over`] finds that of one; `cutoff` is for the first.
+/// [`worst_over`] for several quantities at once; `cutoff` is for the first.
 ///
-/// Each quantity has its own peaks. If `limits` has no limit for it, all peaks are searched; otherwise those that could exceed
-/// the limit and all samples, if the peak rose four times as far above its sample as the parabola through it and its neighbours.
+/// Each quantity has its own peaks. Without a limit in `limits` all of them are searched; otherwise those that would exceed the limit
+/// and all samples if they rose four times as far above their sample as the parabola through it and its neighbours.
 ///
-/// Without `peaks` the samples are all there is.
+/// Without `peaks` only the samples are evaluated.
 ///
 /// # Errors
 /// As [`worst_over`].
@@ -106,8 +106,8 @@ pub fn all_worst_over<E: Send + Sync, const N: usize>(
     refined.into_iter().try_fold(worst, |all, more| Ok(larger(all, more?)))
 }
 
-/// The samples of a band in the order in which one above a cutoff is likely to come soon: every eighth of them or so from the middle outwards,
-/// where a structure near its resonance has its largest values, then those between in the same way.
+/// The samples of a band in an order that is likely to reach one above a cutoff soon: about eight of them, evenly spaced, from the middle
+/// outwards, as a structure has its largest values near its resonance; then those between in the same way.
 fn likely_first(band: &Band) -> Vec<usize> {
     let count = band.samples.max(2);
     let strides = count.div_ceil(TOGETHER);
@@ -120,14 +120,14 @@ fn worst_of<const N: usize>(&Sample { frequency, values }: &Sample<N>) -> [Worst
     values.map(|value| Worst { frequency, value })
 }
 
-/// The larger of each quantity; of equal ones the first.
+/// The larger of each quantity; on a tie `a`.
 fn larger<const N: usize>(a: [Worst; N], b: [Worst; N]) -> [Worst; N] {
     std::array::from_fn(|q| if b[q].value > a[q].value { b[q] } else { a[q] })
 }
 
-/// A local maximum of a quantity between two points, given one between them that is not below either, and the largest values of the
-/// others met on the way, as far as it is `promising` and what is left to gain matters: parabolic steps, with golden sections where these fail (R. P. Brent, Algorithms for Minimization without
-/// Derivatives, 1973, chapter 5), from three known points.
+/// A local maximum of a quantity between two points, given one between them that is not below either, and the largest values of the other
+/// quantities on the way: parabolic steps from three known points, with golden sections where these fail (R. P. Brent, Algorithms for
+/// Minimization without Derivatives, 1973, chapter 5). It ends early below `promising` or once the predicted gain is negligible.
 fn local_maximum<E, const N: usize>(
     sample_at: &dyn Fn(f64) -> Result<Sample<N>, E>,
     around: [Sample<N>; 3],

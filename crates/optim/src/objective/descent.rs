@@ -9,21 +9,21 @@ use crate::search::space::{Side, Space};
 use retune_model::Parameter;
 use std::cell::Cell;
 
-/// Share of the value below which a step is not worth its runs; of a steady response, which is in closed form, that below which it is rounding.
+/// Relative gain below which a step is not worth its runs; for a steady response, which is in closed form, below which it is rounding.
 const GAIN: f64 = 1e-5;
 const STEADY_GAIN: f64 = 1e-10;
-/// The box of a descent reaches to so many times the start, where the bounds do, so that steps are shares of a parameter and not of a bound
-/// that may be far away. A descent that ends on this side of its box goes on in another one, at most so many times.
+/// The box of a descent reaches to `WIDE` times the start, within the bounds, so that steps scale with a parameter and not with a bound
+/// that may be far away. A descent that ends on this side of its box continues in another one, in at most `BOXES` boxes.
 const WIDE: f64 = 4.0;
 const BOXES: usize = 8;
-/// Where nothing bounds the spring and the dashpot, a descent goes no further than to so many times Den Hartog's: the damper is all but
-/// locked to the structure there, and runs take ever more steps.
+/// Upper bounds of an unbounded spring and dashpot, in multiples of Den Hartog's: the damper is all but locked to the structure there, and
+/// runs take ever more steps.
 const LOCKED: [f64; 2] = [1e3, 3e2];
 
-/// Of a design that was not evaluated.
+/// The height of a design that was not evaluated.
 const UNKNOWN: Height = Height { worst: f64::INFINITY, violation: f64::INFINITY };
 
-/// The foot of a slope.
+/// The result of a descent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Foot {
     /// The value at the start, as of [`DesignObjective::value`].
@@ -35,13 +35,13 @@ pub struct Foot {
 }
 
 impl DesignObjective {
-    /// Goes down from `start`: of the designs on the way the best, `start` among them. `start` alone where a value has no pieces.
+    /// Descends from `start` and returns the best design on the way, `start` included; only `start` if its value has no pieces.
     pub fn descend(&self, bounds: &[Bounds], start: &[f64]) -> Foot {
         let counts = [const { Cell::new(0) }; 2];
         let from = Cell::new(f64::NAN);
         let evaluate = |x: &[f64], cutoff: f64| {
             if counts[0].get() >= self.patience {
-                return (UNKNOWN, Vec::new()); // no step to there is taken, and the descent ends
+                return (UNKNOWN, Vec::new()); // the step is rejected, and the descent ends
             }
             let found = self.height_and_runs(x, cutoff);
             counts[0].set(counts[0].get() + 1);
@@ -76,7 +76,7 @@ impl DesignObjective {
         Foot { from: from.get(), end: Point { x: at, value }, counts: Counts { evaluations, infeasible } }
     }
 
-    /// From where on the damper is all but locked by a parameter, in its unit; infinite of one that does not lock it.
+    /// The value of a parameter from which it all but locks the damper, in its unit; infinite for one that does not lock it.
     fn locked(&self, i: usize) -> f64 {
         let [k2, c2] = self.den_hartog();
         let locked = match self.variables()[i] {

@@ -2,8 +2,8 @@
 
 use super::evaluation::{Evaluation, Run};
 use super::limits::INFEASIBLE;
-use super::motions::{Known, Sought};
-use super::runs::{FREE, Hooks, Proceed};
+use super::motions::{Known, MotionSearch};
+use super::runs::{Hooks, NO_HOOKS, Proceed};
 use super::spec::Goal;
 use super::unusable::Unusable;
 use crate::search::minimax::{Height, Piece};
@@ -33,7 +33,7 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// Those of two stages together.
+    /// The sum of the counts of two stages.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {
@@ -55,7 +55,7 @@ pub struct DesignObjective {
     settings: Settings,
     failures: Mutex<Failures>,
     counts: [AtomicU64; 2],
-    /// The motions that are followed; none where all are looked for at each design.
+    /// The known motions to continue; none if all are searched for at each design.
     known: Option<Known>,
     /// Most evaluations of a descent.
     pub(super) patience: u64,
@@ -122,14 +122,14 @@ impl DesignObjective {
         self.value_as(design, cutoff, |found| (found.ranked, found.violation > 0.0))
     }
 
-    /// The same, but `most` if it is above that, whichever number it is; a design that is so is not counted as one that breaks a limit.
+    /// [`Self::value`] capped at `most`. A capped design is not counted as infeasible unless `most` is above [`INFEASIBLE`].
     pub fn value_up_to(&self, design: &[f64], most: f64) -> f64 {
         self.value_as(design, most, |found| {
             (found.ranked.min(most), found.violation > 0.0 && most > INFEASIBLE)
         })
     }
 
-    /// What `of` says of an evaluation: its value, and whether it counts as one that breaks a limit.
+    /// Evaluates a design; `of` gives the value of the evaluation, and whether it counts as infeasible.
     fn value_as(&self, design: &[f64], cutoff: f64, of: impl FnOnce(Evaluation) -> (f64, bool)) -> f64 {
         self.counts[0].fetch_add(1, Relaxed);
         match self.scene(design).and_then(|scene| self.evaluate(&scene, cutoff)) {
@@ -145,12 +145,12 @@ impl DesignObjective {
         }
     }
 
-    /// What is behind [`Self::value`], with the runs that it is made of; failures are not recorded.
+    /// The largest value and the violation behind [`Self::value`], with the runs; failures are not recorded.
     pub fn height_and_runs(&self, design: &[f64], cutoff: f64) -> (Height, Vec<Run>) {
         self.counts[0].fetch_add(1, Relaxed);
         let runs = Mutex::new(Vec::new());
         let keep = |run| runs.lock().unwrap_or_else(PoisonError::into_inner).push(run);
-        let hooks = Hooks { keep: &keep, ..FREE };
+        let hooks = Hooks { keep: &keep, ..NO_HOOKS };
         let found = self.scene(design);
         let found = found.and_then(|scene| self.goal.evaluate_with(&scene, &self.settings, cutoff, hooks));
         let height = found.map_or(Height { worst: f64::INFINITY, violation: 0.0 }, |found| Height {
@@ -181,20 +181,20 @@ impl DesignObjective {
         self.counts[1].fetch_add(infeasible, Relaxed);
     }
 
-    /// The same for a search: where its goal asks for all motions, those that runs from rest lead to are looked at, and those that it
-    /// [learns](Self::learn), which takes a small part of the time.
+    /// The objective for a search: where its goal is over all motions, only those that runs from rest lead to and those that it
+    /// [learns](Self::learn) are evaluated, in a small part of the time.
     #[must_use]
     pub fn following(self) -> Self {
         Self { known: Some(Known::default()), ..self }
     }
 
-    /// The same whose [descents](Self::descend) end after so many evaluations.
+    /// The objective with [descents](Self::descend) that end after `patience` evaluations.
     #[must_use]
     pub fn within(self, patience: u64) -> Self {
         Self { patience, ..self }
     }
 
-    /// Learns the motions at a design, which are followed from there to others; gives the value with all that are found there.
+    /// Learns the motions at a design, which are then continued to other designs; returns the evaluation with all motions found there.
     ///
     /// # Errors
     /// As [`Goal::evaluate`].
@@ -209,10 +209,15 @@ impl DesignObjective {
     /// # Errors
     /// As [`Goal::evaluate`].
     pub fn evaluate(&self, scene: &Scene, cutoff: f64) -> Result<Evaluation, Unusable> {
-        self.goal.evaluate_with(scene, &self.settings, cutoff, Hooks { sought: self.sought(), ..FREE })
+        self.goal.evaluate_with(
+            scene,
+            &self.settings,
+            cutoff,
+            Hooks { motion_search: self.motion_search(), ..NO_HOOKS },
+        )
     }
 
-    /// The same as long as `proceed` says so; see [`Goal::evaluate_while`].
+    /// [`Self::evaluate`] as long as `proceed` is true; see [`Goal::evaluate_while`].
     ///
     /// # Errors
     /// As [`Goal::evaluate_while`].
@@ -226,12 +231,12 @@ impl DesignObjective {
             scene,
             &self.settings,
             cutoff,
-            Hooks { proceed, sought: self.sought(), ..FREE },
+            Hooks { proceed, motion_search: self.motion_search(), ..NO_HOOKS },
         )
     }
 
-    fn sought(&self) -> Sought<'_> {
-        self.known.as_ref().map_or(Sought::All, Sought::Followed)
+    fn motion_search(&self) -> MotionSearch<'_> {
+        self.known.as_ref().map_or(MotionSearch::All, MotionSearch::Followed)
     }
 
     /// The failed evaluations so far.

@@ -80,7 +80,7 @@ impl Ensemble {
         f64::from(sobol_burley::sample(i, dimension, self.seed))
     }
 
-    /// What a parameter of a design is multiplied with in member `i`.
+    /// The factor on a parameter of a design in member `i`.
     pub(crate) fn factor(&self, parameter: Parameter, i: u32) -> f64 {
         let dimension = PERTURBED.iter().position(|perturbed| *perturbed == parameter);
         dimension.map_or(1.0, |number| 1.0 + self.errors * (2.0 * self.point(i, number as u32 + 1) - 1.0))
@@ -90,7 +90,7 @@ impl Ensemble {
     /// known to be above, and so may be those that `value` gives above the cutoff it is given.
     ///
     /// # Errors
-    /// The first of a member.
+    /// The first error of a member.
     pub fn over<E: Send + Sync + Clone>(
         &self,
         value: impl Fn(u32, f64) -> Result<f64, E> + Sync,
@@ -108,7 +108,7 @@ impl Ensemble {
 /// A statistic of `value(i, cutoff)` over `count` cases, see [`Ensemble::over`].
 ///
 /// # Errors
-/// The first of a case.
+/// The first error of a case.
 pub(super) fn statistic_over<E: Send + Sync + Clone>(
     statistic: Statistic,
     count: usize,
@@ -117,7 +117,7 @@ pub(super) fn statistic_over<E: Send + Sync + Clone>(
 ) -> Result<f64, E> {
     let known = |results: &[Result<f64, E>]| -> Vec<f64> { results.iter().flatten().copied().collect() };
     let failed = |results: &[Result<f64, E>]| results.iter().any(Result::is_err);
-    // A mean is above the cutoff once a part of its sum is, by more than the rounding of either.
+    // A mean is above the cutoff once a partial sum shows it, with a margin for rounding.
     let most = count as f64 * cutoff * SLACK;
     let rank = rank(statistic, count);
     let results = in_groups(
@@ -140,13 +140,13 @@ pub(super) fn statistic_over<E: Send + Sync + Clone>(
         return Ok(values.iter().sum::<f64>() / count as f64);
     }
     values.sort_by(f64::total_cmp);
-    // Of a group that ended early the largest is above the cutoff.
+    // Where the groups ended early, the largest value is above the cutoff.
     let place = if values.len() < count { values.len() } else { rank };
     Ok(values[place - 1])
 }
 
 impl Ensemble {
-    /// The derivative of the statistic by the value of each member, in their order: of a quantile that of the member in its place.
+    /// The derivative of the statistic by the value of each member, in their order; for a quantile, 1 for the member that gives it.
     pub(crate) fn by_member(&self, values: &[f64]) -> Vec<f64> {
         let count = values.len();
         if self.statistic == Statistic::Mean {
@@ -162,7 +162,7 @@ impl Ensemble {
 /// Share by which a sum must pass a cutoff to be above it whatever its rounding.
 pub(crate) const SLACK: f64 = 1.0 + 1e-9;
 
-/// The place of a statistic among `count` sorted values, from 1.
+/// The rank of a statistic among `count` sorted values, from 1.
 fn rank(statistic: Statistic, count: usize) -> usize {
     match statistic {
         Statistic::Quantile(share) => ((share * count as f64).ceil() as usize).clamp(1, count),

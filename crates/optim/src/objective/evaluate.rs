@@ -8,8 +8,8 @@ use super::band::{Band, all_worst_over};
 use super::ensemble::{SLACK, statistic_over};
 use super::evaluation::{Evaluation, Place};
 use super::limits::{INFEASIBLE, Limits, PerLimit, ranked};
-use super::motions::{Known, Sought};
-use super::runs::{FREE, Hooks, Largest, Numbered, Observed, Proceed, Runs, Seen};
+use super::motions::{Known, MotionSearch};
+use super::runs::{Hooks, Largest, NO_HOOKS, Numbered, Observed, Proceed, Runs, Seen};
 use super::spec::{Goal, Response, Stiffnesses};
 use super::unusable::Unusable;
 use crate::chunks::in_groups;
@@ -23,10 +23,10 @@ impl Goal {
     /// # Errors
     /// A run could not be finished, or the damper of a steady motion reaches a wall.
     pub fn evaluate(&self, scene: &Scene, settings: &Settings, cutoff: f64) -> Result<Evaluation, Unusable> {
-        self.evaluate_with(scene, settings, cutoff, FREE)
+        self.evaluate_with(scene, settings, cutoff, NO_HOOKS)
     }
 
-    /// The same as long as `proceed` says so, which is asked before each run in time.
+    /// [`Self::evaluate`] as long as `proceed` is true, which is called before each run in time.
     ///
     /// # Errors
     /// As [`Self::evaluate`], and [`Unusable::Stopped`].
@@ -37,10 +37,10 @@ impl Goal {
         cutoff: f64,
         proceed: Proceed<'_>,
     ) -> Result<Evaluation, Unusable> {
-        self.evaluate_with(scene, settings, cutoff, Hooks { proceed, ..FREE })
+        self.evaluate_with(scene, settings, cutoff, Hooks { proceed, ..NO_HOOKS })
     }
 
-    /// The same, with the motions that runs from rest lead to and those that are known, where it asks for all.
+    /// [`Self::evaluate`] where a goal over all motions is limited to those that runs from rest lead to and those continued from `known`.
     ///
     /// # Errors
     /// As [`Self::evaluate`].
@@ -50,10 +50,16 @@ impl Goal {
         settings: &Settings,
         known: &Known,
     ) -> Result<Evaluation, Unusable> {
-        self.evaluate_with(scene, settings, f64::INFINITY, Hooks { sought: Sought::Followed(known), ..FREE })
+        self.evaluate_with(
+            scene,
+            settings,
+            f64::INFINITY,
+            Hooks { motion_search: MotionSearch::Followed(known), ..NO_HOOKS },
+        )
     }
 
-    /// Whether it looks at motions from other starts than rest, over a band: then a search follows those it knows from one design to the next.
+    /// Whether it covers motions from other starts than rest, over a band: then a search continues known motions from one design to the
+    /// next.
     pub fn follows_motions(&self) -> bool {
         self.objective
             .terms()
@@ -61,13 +67,13 @@ impl Goal {
             .any(|(_, term)| term.response == Response::Motions && term.omega.is_some())
     }
 
-    /// The motions of a scene that a search from there follows to other dampers, and the value with all motions that are found.
+    /// The motions of a scene that a search continues to other dampers, and the evaluation with all motions found.
     ///
     /// # Errors
     /// As [`Goal::evaluate`].
     pub fn known(&self, scene: &Scene, settings: &Settings) -> Result<(Evaluation, Known), Unusable> {
         let known = Mutex::default();
-        let hooks = Hooks { sought: Sought::Kept(&known), ..FREE };
+        let hooks = Hooks { motion_search: MotionSearch::Stored(&known), ..NO_HOOKS };
         let found = self.evaluate_with(scene, settings, f64::INFINITY, hooks)?;
         Ok((found, known.into_inner().unwrap_or_else(PoisonError::into_inner)))
     }
@@ -110,7 +116,7 @@ impl Goal {
     ) -> Result<Place, Unusable> {
         let free = Self { limits: Limits::default(), ..self.clone() };
         let observed = Observed::limits(&free.limits);
-        let runs = Runs::new(&free, scene, settings, observed, Hooks { proceed, ..FREE });
+        let runs = Runs::new(&free, scene, settings, observed, Hooks { proceed, ..NO_HOOKS });
         runs.over_losses(scene, phase, term, f64::INFINITY)?;
         Ok(runs.seen.into_inner().unwrap_or_else(PoisonError::into_inner).worst)
     }
@@ -136,14 +142,16 @@ impl Runs<'_> {
     fn term(&self, scene: &Scene, term: Numbered, cutoff: f64) -> Result<f64, Unusable> {
         let records = &term.1.records;
         if records.is_empty() {
-            return self.under(scene, term, cutoff);
+            return self.under_forcing(scene, term, cutoff);
         }
-        let each = |i: usize, cutoff: f64| self.under(&Scene { forcing: records[i], ..*scene }, term, cutoff);
+        let each = |i: usize, cutoff: f64| {
+            self.under_forcing(&Scene { forcing: records[i], ..*scene }, term, cutoff)
+        };
         statistic_over(term.1.over_records(), records.len(), &each, cutoff)
     }
 
     /// The value under the forcing of the scene.
-    fn under(&self, scene: &Scene, term: Numbered, cutoff: f64) -> Result<f64, Unusable> {
+    fn under_forcing(&self, scene: &Scene, term: Numbered, cutoff: f64) -> Result<f64, Unusable> {
         let Some(ensemble) = &term.1.ensemble else {
             return Ok(self.over_losses(scene, 0.0, term, cutoff)?[0]);
         };
@@ -169,7 +177,7 @@ impl Runs<'_> {
     }
 
     fn over_k1(&self, scene: &Scene, phase: f64, term: Numbered, cutoff: f64) -> Result<Largest, Unusable> {
-        let own = scene.primary.stiffness.get();
+        let nominal = scene.primary.stiffness.get();
         let at = |k1: f64| -> Result<Largest, Unusable> {
             let mut scene = *scene;
             scene.primary.stiffness = NonNegative::new(k1).map_err(Unusable::Stiffness)?;
@@ -179,7 +187,7 @@ impl Runs<'_> {
             None => self.over_omega(scene, phase, term, cutoff),
             Some(Stiffnesses::Range(range)) => self.worst_over(&range.band(), &at, cutoff),
             Some(Stiffnesses::Set(set)) => {
-                worst_of(set.len(), &|i| at(set.get(i).map_or(own, |k1| k1.get())), cutoff)
+                worst_of(set.len(), &|i| at(set.get(i).map_or(nominal, |k1| k1.get())), cutoff)
             }
         }
     }
@@ -191,26 +199,26 @@ impl Runs<'_> {
         term: Numbered,
         cutoff: f64,
     ) -> Result<Largest, Unusable> {
-        let own = scene.forcing.frequency.get();
+        let nominal = scene.forcing.frequency.get();
         let band = term.1.omega.map(|band| band.of(&scene.primary));
         if term.1.response == Response::Steady {
-            return self.steady(scene, band.map_or([own; 2], |band| [band.from, band.to]), term);
+            return self.steady(scene, band.map_or([nominal; 2], |band| [band.from, band.to]), term);
         }
         if term.1.response == Response::Motions {
             return self.motions(
                 scene,
-                band.map_or((own, own, 1), |band| (band.from, band.to, band.samples)),
+                band.map_or((nominal, nominal, 1), |band| (band.from, band.to, band.samples)),
                 term,
             );
         }
         let at = |omega: f64| self.run(scene, omega, phase, term, cutoff);
         match band {
             Some(band) => self.worst_over(&band, &at, cutoff),
-            None => at(own),
+            None => at(nominal),
         }
     }
 
-    /// The largest of each over a band. Peaks of what is observed beside the quantity are searched only where they matter.
+    /// The largest of each quantity over a band. Peaks of measures beside the objective's are searched only where they matter.
     fn worst_over(
         &self,
         band: &Band,
@@ -223,7 +231,7 @@ impl Runs<'_> {
     }
 }
 
-/// The larger of each over `count` cases, until one is above the cutoff.
+/// The largest of each quantity over `count` cases, until one is above the cutoff.
 fn worst_of(
     count: usize,
     at: &(dyn Fn(usize) -> Result<Largest, Unusable> + Sync),

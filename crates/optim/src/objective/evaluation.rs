@@ -1,4 +1,4 @@
-//! What an evaluation finds: a value and the runs behind it.
+//! The result of an evaluation: a value and the runs behind it.
 
 use super::limits::PerLimit;
 use super::spec::Goal;
@@ -20,9 +20,9 @@ pub struct Place {
 /// A run behind a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Run {
-    /// What it is of.
+    /// The scene and the largest quantity.
     pub place: Place,
-    /// The largest values that it was watched for; 0 of others.
+    /// The largest values that were observed; 0 for others.
     pub reached: PerMeasure<f64>,
 }
 

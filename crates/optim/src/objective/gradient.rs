@@ -1,4 +1,4 @@
-//! The derivatives of a value by the parameters of the damper: those of the runs behind it.
+//! The derivatives of a value by the parameters of the damper, from those of the runs behind it.
 //!
 //! By the envelope theorem (J. M. Danskin, The Theory of Max-Min, 1967) the largest value over time, a band of frequencies or a range of
 //! stiffnesses changes like the value at the place where it is reached: there is a peak, along which nothing changes to first order, or an
@@ -18,13 +18,14 @@ use rayon::prelude::*;
 use retune_model::{Coupled, Measure, Parameter, Scene};
 use retune_solver::{Ask, Settings, Window, extremes_by, settled_by};
 
-/// The worst run of a member of an ensemble, or of the scene itself; and by how much each varied parameter of it changes with that of the
+/// The worst run of a member of an ensemble, or of the scene itself; and the derivative of each of its varied parameters by that of the
 /// scene.
 type Member = (Place, Vec<f64>);
 
 impl DesignObjective {
-    /// What [`Self::evaluate`] finds for a design, and the derivatives of its value by the design, per SI unit of each parameter; as long
-    /// as `proceed` says so. The derivatives of an irregular motion are those of its one run: right, large, and of no use to a search.
+    /// The result of [`Self::evaluate`] for a design, and the derivatives of its value by the design, per SI unit of each parameter; as
+    /// long as `proceed` is true. The derivatives of an irregular motion are those of its single run: correct, large, and useless to a
+    /// search.
     ///
     /// # Errors
     /// As [`Goal::evaluate_while`], and a value out of its parameter's range.
@@ -38,7 +39,7 @@ impl DesignObjective {
     }
 }
 
-/// What derivatives are taken of.
+/// The goal and the scene that are differentiated.
 struct Slopes<'a> {
     goal: &'a Goal,
     scene: Scene,
@@ -89,7 +90,7 @@ impl Slopes<'_> {
         let mut objective = self.goal.objective.clone();
         objective.for_each_term(&mut |term| {
             term.quantity = measure;
-            // What precedes a settled motion counts, too, and that goes on as it is.
+            // The transient before a settled motion counts, too, so the whole window is evaluated.
             if term.response == Response::Settled {
                 term.response = Response::Window;
             }

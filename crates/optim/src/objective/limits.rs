@@ -2,8 +2,7 @@
 //!
 //! The rules are those of K. Deb (An efficient constraint handling method for genetic algorithms, Comput. Methods Appl. Mech.
 //! Engrg. 186, 2000): a design that keeps all limits is better than any that breaks one; of two that break some, the one that
-//! breaks them by less in total is better. They are written as one number, [`ranked`], so that every search follows them
-//! without knowing of them.
+//! breaks them by less in total is better. They are combined in one number, [`ranked`], so that every search follows them.
 
 mod file;
 
@@ -57,7 +56,7 @@ impl Limit {
     }
 
     /// Its place in [`Self::ALL`].
-    const fn place(self) -> usize {
+    const fn index(self) -> usize {
         match self {
             Self::Of(measure) => measure.index(),
             Self::Cavity => Measure::OF_RUN.len(),
@@ -89,17 +88,17 @@ impl<T: Copy> PerLimit<T> {
 
     /// The value for `limit`.
     pub fn get(&self, limit: Limit) -> T {
-        self.0[limit.place()]
+        self.0[limit.index()]
     }
 
     /// Sets the value for `limit`.
     pub fn set(&mut self, limit: Limit, value: T) {
-        self.0[limit.place()] = value;
+        self.0[limit.index()] = value;
     }
 }
 
 impl PerLimit<f64> {
-    /// What was reached of each measure; the cavity has none.
+    /// The values of the measures, without the cavity.
     pub fn measures(&self) -> PerMeasure<f64> {
         PerMeasure(Measure::OF_RUN.map(|measure| self.get(Limit::Of(measure))))
     }
@@ -115,14 +114,14 @@ pub struct Limits {
     pub from: Option<NonNegative>,
 }
 
-/// Values of [`ranked`] from here on are of designs that break a limit. No value comes near.
+/// Values of [`ranked`] from here on are of designs that break a limit. No objective value comes near.
 pub const INFEASIBLE: f64 = 1e100;
 
 /// A reached value within this share of its limit makes the limit active.
 pub const ACTIVE: f64 = 0.01;
 
 impl Limits {
-    /// The share of a limit by which rounding may exceed it: no one is told of less.
+    /// The share of a limit by which rounding may exceed it: a smaller excess is not reported.
     pub const ROUNDING: f64 = 1e-12;
 
     /// The largest value allowed of a quantity.
@@ -130,20 +129,20 @@ impl Limits {
         self.most.get(limit).map(Positive::get)
     }
 
-    /// The same limits with another one.
+    /// These limits with one more.
     #[must_use]
     pub fn with(mut self, limit: Limit, most: Positive) -> Self {
         self.most.set(limit, Some(most));
         self
     }
 
-    /// The same limits from another time on, s.
+    /// These limits from another time on, s.
     #[must_use]
     pub const fn since(self, from: Option<NonNegative>) -> Self {
         Self { from, ..self }
     }
 
-    /// Whether none is given, nor from when on.
+    /// Whether neither a limit nor `from` is set.
     pub fn is_default(&self) -> bool {
         *self == Self::default()
     }
@@ -159,7 +158,7 @@ impl Limits {
         self.set().next().is_none()
     }
 
-    /// What a run must be watched for, and from when on; `None` where no limit asks for anything of a run.
+    /// The measures that runs must observe, and from when on; `None` if no limit needs a run.
     pub fn also(&self) -> Option<Also> {
         let limited = |measure: &Measure| self.get(Limit::Of(*measure)).is_some();
         let measures: PerMeasure<bool> = Measure::OF_RUN.into_iter().filter(limited).collect();
@@ -167,7 +166,7 @@ impl Limits {
         (measures != PerMeasure::default()).then_some(Also { measures, from })
     }
 
-    /// By how much the limits are broken: the sum of `reached / limit - 1` over those that are; 0 for a feasible design.
+    /// The violation: the sum of `reached / limit - 1` over the broken limits; 0 for a feasible design.
     pub fn violation(&self, reached: &PerLimit<f64>) -> f64 {
         let over = |limit| {
             let allowed = self.get(limit)?;
@@ -186,13 +185,13 @@ impl Limits {
     }
 }
 
-/// The number that searches make small: the objective's value of a feasible design, in the unit of its quantity; above [`INFEASIBLE`] that of
-/// any other.
+/// The number that searches minimise: the objective's value of a feasible design, in the unit of its quantity; above [`INFEASIBLE`] for any
+/// other.
 pub fn ranked(value: f64, violation: f64) -> f64 {
     if violation > 0.0 { INFEASIBLE * (1.0 + violation) } else { value }
 }
 
-/// The objective's value of a number made by [`ranked`]; NaN of one that is infeasible or has none.
+/// The objective's value from the result of [`ranked`]; NaN if infeasible or without a value.
 pub fn value_of(ranked: f64) -> f64 {
     if ranked < INFEASIBLE { ranked } else { f64::NAN }
 }

@@ -1,4 +1,4 @@
-//! The largest over every motion that is found, for the response "motions".
+//! The largest value over all motions found, for the response "motions".
 
 use super::spec::{Objective, STARTS};
 use super::unusable::Unusable;
@@ -9,59 +9,59 @@ use retune_model::{Measure, Parameter, PerMeasure, Scene, Worst};
 use retune_solver::Settings;
 use std::sync::{Mutex, PoisonError};
 
-/// What was found.
+/// The largest values found.
 pub(super) struct Outcome {
     /// The largest value of the quantity, and where, rad/s.
     pub largest: Worst,
-    /// Those of the measures that were asked for beside it.
+    /// Those of the other measures asked for.
     pub also: Vec<(Measure, Worst)>,
     /// Whether stable periodic motions are known in the whole band.
     pub settled: bool,
 }
 
-/// Motions of one damper, for each structure, force and quantity that an objective looks at, which a search follows to other dampers.
+/// Motions of one damper, for each structure, force and quantity of an objective, which a search continues to other dampers.
 #[derive(Debug, Default)]
 pub struct Known(Vec<(Scene, Measure, Vec<Seed>)>);
 
 impl Known {
-    /// Those of the structure that is nearest to that of a scene.
+    /// The motions of the structure whose k1 is nearest to that of a scene.
     fn of(&self, scene: &Scene, measure: Measure) -> &[Seed] {
         let k1 = |scene: &Scene| scene.primary.stiffness.get();
-        let own = self.0.iter().filter(|(_, of, _)| *of == measure);
+        let of_measure = self.0.iter().filter(|(_, of, _)| *of == measure);
         let away = |other: &Scene| (k1(other) - k1(scene)).abs();
-        own.min_by(|a, b| away(&a.0).total_cmp(&away(&b.0))).map_or(&[], |(.., seeds)| seeds)
+        of_measure.min_by(|a, b| away(&a.0).total_cmp(&away(&b.0))).map_or(&[], |(.., seeds)| seeds)
     }
 }
 
-/// Which motions are looked at.
+/// Which motions are evaluated.
 #[derive(Clone, Copy)]
-pub(super) enum Sought<'a> {
+pub(super) enum MotionSearch<'a> {
     /// All that are found from many starts.
     All,
-    /// The same, and they are kept.
-    Kept(&'a Mutex<Known>),
-    /// Those that runs from rest lead to, and those that are known.
+    /// All that are found from many starts; they are also stored.
+    Stored(&'a Mutex<Known>),
+    /// Those that runs from rest lead to, and those continued from known ones.
     Followed(&'a Known),
 }
 
-/// Finds the motions of a scene from one frequency to another, by runs at so many of them.
+/// Finds the largest values over the motions of a scene in a band, by runs at `samples` frequencies.
 pub(super) fn largest_motion(
     scene: &Scene,
     (from, to, samples): (f64, f64, usize),
     term: &Objective,
-    (also, sought): (PerMeasure<bool>, Sought<'_>),
+    (also, motion_search): (PerMeasure<bool>, MotionSearch<'_>),
     settings: &Settings,
 ) -> Result<Outcome, Unusable> {
     let starts = term.starts.unwrap_or(STARTS);
     let plan = Plan { samples, starts, passes: 1, ..Plan::over(Parameter::Omega, [from, to]) };
     let measures: Vec<Measure> = [term.quantity].into_iter().chain(also.chosen()).collect();
-    let found = if let Sought::Followed(known) = sought
+    let found = if let MotionSearch::Followed(known) = motion_search
         && from < to
     {
         from_rest_and(known.of(scene, term.quantity), scene, (plan, term.quantity), settings)?
     } else {
         let found = branches(scene, plan, settings, Control::default())?;
-        if let Sought::Kept(known) = sought
+        if let MotionSearch::Stored(known) = motion_search
             && from < to
         {
             let seeds = found.known(scene, term.quantity, settings)?;

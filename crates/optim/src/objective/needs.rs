@@ -1,10 +1,10 @@
-//! What a damper needs: the largest value of every measure over all that a goal covers, and where; and the best linear damper beside it.
+//! The requirements of a damper: the largest value of every measure over all that a goal covers, and where; and the best linear damper.
 
 use super::band::Band;
 use super::design_objective::DesignObjective;
 use super::evaluation::Run;
 use super::limits::Limits;
-use super::runs::{FREE, Hooks, Observed, Proceed, Runs};
+use super::runs::{Hooks, NO_HOOKS, Observed, Proceed, Runs};
 use super::spec::{Goal, Objective, Response};
 use super::tmd::TUNINGS;
 use super::unusable::Unusable;
@@ -33,24 +33,24 @@ pub struct Need {
 pub struct Needs {
     /// Over runs from rest, from t = 0 to the end of the window, and over all that the objective looks at.
     pub whole: PerMeasure<Need>,
-    /// Over what the objective looks at alone: its window, settled or steady motions, or all motions that are found.
+    /// Over the objective's part of the response alone: its window, settled or steady motions, or all motions found.
     pub own: PerMeasure<Need>,
 }
 
-/// Samples of runs from rest in the width 2π/T over which a run of length T tells frequencies apart, and the most of a band. An objective
-/// with an ensemble or several stiffnesses, whose runs are many, is looked at on its own samples, as its own part of the response is.
+/// Samples of runs from rest per width 2π/T, the resolution in frequency of a run of length T, and the most of a band. An objective with an
+/// ensemble, several stiffnesses or restitutions, whose runs are many, keeps its own samples.
 const PER_WIDTH: f64 = 8.0;
 const MOST: f64 = 1601.0;
 
-/// How often the search of the best linear damper is begun again at its end, where it gains this share each time.
+/// Most restarts of the search for the best linear damper, as long as each gains this share.
 const RESTARTS: u32 = 4;
 const GAIN: f64 = 1e-4;
-/// The share of its critical damping below which a damper is told to have none.
+/// The share of its critical damping below which a damper's damping is set to zero.
 const UNDAMPED: f64 = 1e-9;
 
 impl Goal {
-    /// What a scene needs by this goal, regardless of its limits, as long as `proceed` says so. Peaks between samples are searched, as those
-    /// of the quantity are.
+    /// The requirements of a scene by this goal, regardless of its limits, as long as `proceed` is true. Peaks between samples are searched
+    /// for every measure.
     ///
     /// # Errors
     /// As [`Goal::evaluate_while`].
@@ -61,9 +61,8 @@ impl Goal {
         Ok(Needs { whole, own })
     }
 
-    /// What a scene needs from rest on, [`Needs::whole`], beside what it needs by what the objective looks at. Peaks between samples are
-    /// searched only where they may exceed what `matters` of their measure: irregular motions have one at every other sample, whose search
-    /// is most of the work.
+    /// [`Needs::whole`] of a scene, given its [`Needs::own`]. Peaks between samples are searched only where they may exceed `matters` for
+    /// their measure: irregular motions have a peak at every other sample, and searching them is most of the work.
     ///
     /// # Errors
     /// As [`Goal::evaluate_while`].
@@ -94,7 +93,7 @@ impl Goal {
         Ok(all)
     }
 
-    /// What a scene needs by what the objective looks at alone: [`Needs::own`], to the same bits.
+    /// [`Needs::own`] of a scene alone, with bitwise equal results.
     ///
     /// # Errors
     /// As [`Goal::evaluate_while`].
@@ -108,8 +107,8 @@ impl Goal {
         self.of_every_measure().largest(scene, settings, (None, matters), proceed)
     }
 
-    /// The same goal without limits, so that it stops at none, of largest values alone. A stationary random motion has none: those of the draw
-    /// in the window are told.
+    /// The goal without limits, so that none ends an evaluation, and for largest values only. A stationary random motion has none: it is
+    /// replaced by the draw in the window.
     fn of_every_measure(&self) -> Self {
         let mut goal = Self { limits: Limits::default(), peaks: true, ..self.clone() };
         goal.objective.for_each_term(&mut |term| {
@@ -121,8 +120,8 @@ impl Goal {
         goal
     }
 
-    /// The largest value of each measure from a time on, s; without one, of what the objective looks at. Peaks are searched where they may
-    /// exceed what `matters`.
+    /// The largest value of each measure from a time on, s; without one, over the objective's part of the response. Peaks are searched
+    /// where they may exceed `matters`.
     fn largest(
         &self,
         scene: &Scene,
@@ -138,7 +137,7 @@ impl Goal {
             let mut largest = largest.lock().unwrap_or_else(PoisonError::into_inner);
             for (known, value) in largest.0.iter_mut().zip(run.reached.0) {
                 let found = Need { value, omega, k1, restitution };
-                // Of equal ones the first by ω, k1 and restitution, whichever thread comes first.
+                // On a tie the first by ω, k1 and restitution, independent of the order of the threads.
                 let key = |need: &Need| [-need.value, need.omega, need.k1, need.restitution];
                 if key(&found).partial_cmp(&key(known)).is_some_and(std::cmp::Ordering::is_lt) {
                     *known = found;
@@ -146,18 +145,18 @@ impl Goal {
             }
         };
         let also = Some(Also { measures: PerMeasure::EVERY, from: from.unwrap_or(self.window.from) });
-        let observed = Observed { also, own: from.is_none(), matters };
-        let runs = Runs::new(self, scene, settings, observed, Hooks { keep: &keep, proceed, ..FREE });
+        let observed = Observed { also, response_only: from.is_none(), matters };
+        let runs = Runs::new(self, scene, settings, observed, Hooks { keep: &keep, proceed, ..NO_HOOKS });
         self.sum(scene, f64::INFINITY, &runs)?;
         Ok(largest.into_inner().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// The damper of the same mass without walls that this goal is smallest for, regardless of limits and bounds; none where the goal says
-    /// nothing of the structure, or there is no such damper to start from.
+    /// The damper without walls, of the same mass, that minimises this goal, regardless of limits and bounds; none if the goal does not
+    /// measure the structure, or if there is no such damper to start from.
     ///
-    /// A search by the closed form of the steady motion, over the band if there is one, begins at Den Hartog's tuning and in the deepest
-    /// [valley](DesignObjective::valleys) of a grid; one by the goal itself follows, unless that has an ensemble. One that has stopped in a kink is begun
-    /// again there.
+    /// A search by the closed form of the steady motion, over the band if there is one, starts at Den Hartog's tuning and in the deepest
+    /// [valley](DesignObjective::valleys) of a grid; a search by the goal itself follows, unless it has an ensemble. A search that has
+    /// stopped in a kink is restarted there.
     pub fn best_linear(&self, scene: &Scene, settings: &Settings) -> Option<Scene> {
         let damper = scene.damper?;
         let quantity = self.objective.quantity();
@@ -191,14 +190,14 @@ impl Goal {
             let from =
                 |start: &[f64]| minimize(value, start, options.clone(), |_| ControlFlow::Continue(())).ok();
             let mut found = from(&start)?;
-            // A simplex may stop in a kink. In closed form another costs little.
+            // A simplex may stop in a kink. In closed form a restart costs little.
             let restarts = if objective.goal().objective.is_steady() { RESTARTS } else { 0 };
             for _ in 0..restarts {
-                let again = from(&found.x)?;
-                if again.value >= (1.0 - GAIN) * found.value {
+                let restarted = from(&found.x)?;
+                if restarted.value >= (1.0 - GAIN) * found.value {
                     break;
                 }
-                found = again;
+                found = restarted;
             }
             Some((<[f64; 2]>::try_from(found.x).ok()?, found.value))
         };

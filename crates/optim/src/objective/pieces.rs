@@ -1,8 +1,8 @@
-//! The smooth functions of a design that its value is the largest of: the peaks over the frequencies, of the quantity and of what has a
-//! limit, with their derivatives.
+//! The smooth functions whose largest is the value of a design: the peaks over the frequencies of the quantity and of the limited measures,
+//! with their derivatives.
 //!
-//! At a peak the derivative by the frequency is zero, and at an end of the band the frequency is held, so that the derivatives of a peak are
-//! those of the run at its frequency (the envelope theorem). Those of a steady response are in closed form, those under a pulse or a record by
+//! At a peak the derivative by the frequency is zero, and at an end of the band the frequency is fixed, so the derivatives of a peak are
+//! those of the run at its frequency (the envelope theorem). For a steady response they are in closed form, under a pulse or a record by
 //! differences.
 
 use super::band::Band;
@@ -14,22 +14,22 @@ use rayon::prelude::*;
 use retune_model::{Coupled, Measure, Parameter, Scene, Worst};
 use retune_solver::{Also, Ask, Settings, Window, extremes, extremes_by};
 
-/// A peak below this share of the largest of its kind cannot soon be the largest.
+/// Peaks below this share of the largest of their kind are ignored.
 const HIGH: f64 = 0.7;
 /// Most peaks of a kind: an irregular motion has one at every other sample.
 const MOST: usize = 12;
-/// Peaks as near as this, as a share of the frequency, are one, which its search met twice.
+/// Peaks nearer than this, as a share of the frequency, are one that was found twice.
 const APART: f64 = 1e-5;
 
 /// The step of a difference, as a share of the parameter; of a gap as a share of both gaps, since one may be zero. Runs are exact to about 1e-10.
 const STEP: f64 = 1e-6;
 
-/// What a piece is of: a measure in a window, and its limit.
+/// The kind of a piece: a measure in a window, and its limit, if any.
 type Kind = (Measure, Window, Option<f64>);
 
 impl Goal {
-    /// Whether its value is the largest of peaks, each with derivatives by [`Self::pieces`]: that of no sum, of no ensemble, of no random motion,
-    /// of no decay time and of no motion but those from rest and the steady one.
+    /// Whether its value is the largest of peaks, each with derivatives by [`Self::pieces`]. Sums, ensembles, random motions, decay times,
+    /// lists of records and responses other than those from rest and the steady one have none.
     pub fn has_pieces(&self) -> bool {
         let Objective { sum, ensemble, response, records, .. } = &self.objective;
         sum.is_empty()
@@ -39,8 +39,8 @@ impl Goal {
             && matches!(response, Response::Window | Response::Steady)
     }
 
-    /// The highest peaks of `runs`, which were made to evaluate `scene`, with their derivatives by `variables`; those that have none, since
-    /// their run cannot be followed, are left out. Limits come as shares, 0 where they are just kept.
+    /// The highest peaks of `runs`, made to evaluate `scene`, with their derivatives by `variables`. Peaks whose derivatives cannot be
+    /// computed are left out. Limits are given as relative excess, 0 where they are just kept.
     pub fn pieces(
         &self,
         scene: &Scene,
@@ -100,12 +100,12 @@ impl Goal {
     }
 }
 
-/// The value of a run of a kind of piece.
+/// The value of a run for a kind of piece.
 fn value(run: &Run, (measure, _, limit): Kind) -> f64 {
     if limit.is_some() { run.reached.get(measure) } else { run.place.largest }
 }
 
-/// The derivatives of the value of a run by one-sided differences; none where a neighbour cannot be run.
+/// The derivatives of the value of a run by one-sided differences; none if a perturbed scene cannot be run.
 fn differences(
     run: &Run,
     kind @ (measure, window, limit): Kind,

@@ -1,8 +1,8 @@
-//! The runs behind a value: each is made, and what it reaches is kept.
+//! The runs behind a value: makes each, and records the values that it reaches.
 
 use super::evaluation::{Place, Run};
 use super::limits::{Limit, Limits};
-use super::motions::{Outcome, Sought, largest_motion};
+use super::motions::{MotionSearch, Outcome, largest_motion};
 use super::spec::{Goal, Objective, Response};
 use super::unusable::Unusable;
 use retune_model::{
@@ -11,19 +11,20 @@ use retune_model::{
 use retune_solver::{Also, Ask, Settings, Window, extremes, settled};
 use std::sync::{Mutex, PoisonError};
 
-/// Whether an evaluation may go on; once it says no, the evaluation is cancelled.
+/// Whether an evaluation may continue; once it returns false, the evaluation is cancelled.
 pub type Proceed<'a> = &'a (dyn Fn() -> bool + Sync);
 
-/// What is asked before each run of an evaluation in time, and what is given each run.
+/// Callbacks of an evaluation: `proceed` before each run in time, `keep` after each run; and the motions to evaluate.
 #[derive(Clone, Copy)]
 pub(super) struct Hooks<'a> {
     pub proceed: Proceed<'a>,
     pub keep: &'a (dyn Fn(Run) + Sync),
-    pub sought: Sought<'a>,
+    pub motion_search: MotionSearch<'a>,
 }
 
-/// No questions, and nothing kept.
-pub(super) const FREE: Hooks<'static> = Hooks { proceed: &|| true, keep: &|_| (), sought: Sought::All };
+/// Hooks that neither cancel nor keep anything.
+pub(super) const NO_HOOKS: Hooks<'static> =
+    Hooks { proceed: &|| true, keep: &|_| (), motion_search: MotionSearch::All };
 
 /// The largest values so far. They are maxima and counts only, so the order of the threads does not matter.
 pub(super) struct Seen {
@@ -33,24 +34,24 @@ pub(super) struct Seen {
     pub unsettled: u64,
 }
 
-/// What is observed of runs beside the quantity, and of each measure the value from which on its peaks between samples matter.
+/// The measures to observe besides the quantity, and for each the value above which its peaks between samples are searched.
 #[derive(Clone, Copy)]
 pub(super) struct Observed {
     pub also: Option<Also>,
-    /// Whether it is observed in the part of the response alone that the objective looks at.
-    pub own: bool,
+    /// Whether they are observed only in the part of the response that the objective covers.
+    pub response_only: bool,
     pub matters: PerMeasure<f64>,
 }
 
 impl Observed {
-    /// What limits need.
+    /// The measures that limits need.
     pub(super) fn limits(limits: &Limits) -> Self {
         let matters = Measure::OF_RUN.map(|measure| limits.get(Limit::Of(measure)).unwrap_or(f64::INFINITY));
-        Self { also: limits.also(), own: false, matters: PerMeasure(matters) }
+        Self { also: limits.also(), response_only: false, matters: PerMeasure(matters) }
     }
 }
 
-/// The settings of a goal's runs, and the values that are kept of them.
+/// The settings of a goal's runs, and the values recorded of them.
 pub(super) struct Runs<'a> {
     pub settings: &'a Settings,
     window: Window,
@@ -63,7 +64,7 @@ pub(super) struct Runs<'a> {
 /// A term with its number.
 pub(super) type Numbered<'a> = (usize, &'a Objective);
 
-/// The largest quantity of some runs, and their largest value of each measure; 0 of those that are not observed.
+/// The largest quantity of some runs, and their largest value of each measure; 0 for those that are not observed.
 pub(super) type Largest = [f64; Measure::OF_RUN.len() + 1];
 
 fn largest_of(quantity: f64, PerMeasure(reached): PerMeasure<f64>) -> Largest {
@@ -96,8 +97,8 @@ impl<'a> Runs<'a> {
         if !(self.hooks.proceed)() {
             return Err(Unusable::Stopped);
         }
-        let own_from = if term.response == Response::Settled { f64::INFINITY } else { self.window.from };
-        let from = |also: Also| if self.observed.own { own_from } else { also.from };
+        let response_from = if term.response == Response::Settled { f64::INFINITY } else { self.window.from };
+        let from = |also: Also| if self.observed.response_only { response_from } else { also.from };
         let also = self.observed.also.map(|also| Also { from: from(also), ..also });
         let ask = Ask { measure: term.quantity, phase, also, cutoff };
         let found = match term.response {
@@ -111,7 +112,7 @@ impl<'a> Runs<'a> {
         if decay.max(found.reached.get(Measure::DecayTime)).is_infinite() {
             return Err(Unusable::NotDecayed { to: self.window.to });
         }
-        self.see(Place { largest, scene, phase, term: number }, found.reached, found.settled);
+        self.record(Place { largest, scene, phase, term: number }, found.reached, found.settled);
         Ok(largest_of(largest, found.reached))
     }
 
@@ -120,7 +121,7 @@ impl<'a> Runs<'a> {
         self.observed.also.map(|also| also.measures).unwrap_or_default()
     }
 
-    /// The largest over all motions in a band of so many samples. The place is that of the largest, which may not be of a run from rest.
+    /// The largest over all motions in a band with `samples` samples. Its place may not be of a run from rest.
     pub(super) fn motions(
         &self,
         scene: &Scene,
@@ -134,17 +135,17 @@ impl<'a> Runs<'a> {
             scene,
             (from, to, samples),
             term,
-            (self.measures(), self.hooks.sought),
+            (self.measures(), self.hooks.motion_search),
             self.settings,
         )?;
-        self.see_each(scene, number, largest, &also, settled)
+        self.record_each(scene, number, largest, &also, settled)
     }
 
     /// The mean of a stationary random motion under the spectrum of a scene.
     fn stationary(&self, scene: &Scene, rms: Rms, term: usize) -> Result<Largest, Unusable> {
         let found = Stationary::new(scene, self.settings.rtol).ok_or(Unusable::NotStationary)?;
         let quantity = Worst { value: found.get(rms), frequency: 0.0 };
-        self.see_each(scene, term, quantity, &[], true)
+        self.record_each(scene, term, quantity, &[], true)
     }
 
     pub(super) fn steady(
@@ -179,11 +180,11 @@ impl<'a> Runs<'a> {
                 also.push((Measure::Stroke, worst));
             }
         }
-        self.see_each(scene, number, max(term.quantity), &also, true)
+        self.record_each(scene, number, max(term.quantity), &also, true)
     }
 
-    /// The largest values of one evaluation over a band, each at a frequency of its own, as those of a run there; one run counts.
-    fn see_each(
+    /// Records the largest values of one evaluation over a band, each at its own frequency, as if of a run there; counts one run.
+    fn record_each(
         &self,
         scene: &Scene,
         term: usize,
@@ -201,7 +202,7 @@ impl<'a> Runs<'a> {
             let mut reached = PerMeasure::default();
             reached.set(*measure, worst.value);
             all.set(*measure, worst.value);
-            // What the quantity is there is not known, and it is not the largest.
+            // The quantity there is not known, and it is not the largest.
             let place = Place { largest: f64::NEG_INFINITY, scene: at(worst)?, phase: 0.0, term };
             (self.hooks.keep)(Run { place, reached });
         }
@@ -211,7 +212,7 @@ impl<'a> Runs<'a> {
         Ok(largest_of(quantity.value, all))
     }
 
-    fn see(&self, place: Place, reached: PerMeasure<f64>, settled: bool) {
+    fn record(&self, place: Place, reached: PerMeasure<f64>, settled: bool) {
         (self.hooks.keep)(Run { place, reached });
         self.count(place, reached, settled);
     }
@@ -232,7 +233,7 @@ impl<'a> Runs<'a> {
             let [a, b, c] = history;
             [-place.largest, place.term as f64, omega, k1, e, place.phase, a, b, c]
         };
-        // Of equal ones the first by term, ω, k1, restitution, phase and record.
+        // On a tie the first by term, ω, k1, restitution, phase and record.
         let order =
             key(&place).iter().zip(&key(&seen.worst)).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne());
         if order.is_some_and(|order| order.is_lt()) {

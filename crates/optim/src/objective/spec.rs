@@ -1,4 +1,4 @@
-//! An objective: what is made small, and over what. A study file is read into this, and this is what a search evaluates.
+//! The specification of an objective: the quantity to minimise, and over what. It is read from a study file and evaluated by a search.
 
 use super::band::Band;
 use super::ensemble::{Ensemble, Statistic};
@@ -163,7 +163,7 @@ fn is_default(settle: &Settle) -> bool {
     *settle == Settle::default()
 }
 
-/// Starts beside that from rest, where a study does not say how many.
+/// Default number of starts besides that from rest.
 pub const STARTS: usize = 16;
 
 fn samples() -> usize {
@@ -201,7 +201,7 @@ impl Objective {
         self.records_by.unwrap_or(Statistic::Worst)
     }
 
-    /// A scene with each of the restitutions; as it is where none are given.
+    /// A scene with each of the restitutions; unchanged if none are given.
     ///
     /// # Errors
     /// Its contacts have a loss of another kind, or there are none.
@@ -217,7 +217,7 @@ impl Objective {
 }
 
 impl Objective {
-    /// Whether it is that of a study that does not name one: the largest E1 in the window.
+    /// Whether it is the default: the largest E1 in the window.
     pub fn is_default(&self) -> bool {
         *self == Self::default()
     }
@@ -230,12 +230,12 @@ impl Objective {
         self.sum
             .iter()
             .flat_map(|Part { weight, objective }| {
-                objective.terms().into_iter().map(|(own, term)| (weight.get() * own, term))
+                objective.terms().into_iter().map(|(inner, term)| (weight.get() * inner, term))
             })
             .collect()
     }
 
-    /// What is made small; the terms of a sum have the same.
+    /// The quantity to minimise, the same for all terms of a sum.
     pub fn quantity(&self) -> Measure {
         self.sum.first().map_or(self.quantity, |part| part.objective.quantity())
     }
@@ -254,7 +254,7 @@ impl Objective {
         matches!(self.quantity(), Measure::Stationary(_))
     }
 
-    /// Whether what is made small changes smoothly with a design, and its derivatives are known: that of random motion and of decay times are not.
+    /// Whether the quantity changes smoothly with a design and has known derivatives, unlike those of random motions and decay times.
     pub fn has_derivatives(&self) -> bool {
         !self.is_stationary() && self.quantity() != Measure::DecayTime
     }

@@ -5,13 +5,13 @@ use crate::search::fminsearch::Bounds;
 use rayon::prelude::*;
 use retune_model::Parameter;
 
-/// The springs and dashpots of the grid for a best TMD that has no limits, in those of Den Hartog's.
+/// The ranges of spring and dashpot of the grid for a best TMD without limits, in multiples of Den Hartog's.
 pub const TUNINGS: [[f64; 2]; 2] = [[0.05, 5.0], [0.05, 300.0]];
-/// Points of the grid along an axis that no band widens.
+/// Points of the grid along an axis that is not widened for a band.
 const POINTS: usize = 16;
-/// The grid goes so many times beyond dampers that are tuned to the ends of a band.
+/// Factor by which the grid extends beyond dampers tuned to the ends of a band.
 const ROOM: f64 = 3.0;
-/// Ends of a band that are farther from the natural frequency than by this factor are taken to be there.
+/// Ends of a band are clamped to this factor from the natural frequency.
 const FAR: f64 = 1000.0;
 
 /// The ends of a band in multiples of a natural frequency (rad/s) above zero.
@@ -19,9 +19,9 @@ pub fn over_natural(band: [f64; 2], natural: f64) -> [f64; 2] {
     band.map(|omega| (omega / natural).clamp(1.0 / FAR, FAR))
 }
 
-/// A range of k2 in multiples of Den Hartog's, widened so that it holds, with room, the springs of dampers tuned anywhere in a band. A structure that is
-/// driven off its resonance has its best TMD where it is driven. The band is in [multiples of
-/// the natural frequency](over_natural).
+/// A range of k2 in multiples of Den Hartog's, widened to include, with a margin, the springs of dampers tuned anywhere in a band: the best
+/// TMD of a structure that is driven off its resonance is tuned to where it is driven. The band is in [multiples of the natural
+/// frequency](over_natural).
 pub fn springs_for([from, to]: [f64; 2], [lowest, highest]: [f64; 2]) -> [f64; 2] {
     [from.min(lowest.powi(2) / ROOM), to.max(ROOM * highest.powi(2))]
 }
@@ -44,9 +44,8 @@ impl DesignObjective {
         over_natural(all, primary.natural_frequency())
     }
 
-    /// The designs of a grid over spring and dashpot that are no worse than those beside them, the best first, each with its value. The grid is even in
-    /// the logarithm and goes from and to these multiples of Den Hartog's k2 and c2, wider where the band asks for it ([`springs_for`]); `bounds` holds
-    /// it. The objective varies one of them, or both.
+    /// The local minima of a grid over spring and dashpot, best first, each with its value. The grid is logarithmic over these multiples of
+    /// Den Hartog's k2 and c2, widened for the band ([`springs_for`]) and clamped to `bounds`. The objective varies one of them, or both.
     pub fn valleys(&self, ranges: [[f64; 2]; 2], bounds: &[Bounds]) -> Vec<(f64, Vec<f64>)> {
         let (scales, driven) = (self.den_hartog(), self.driven());
         let axis = |(variable, bounds): (&Parameter, &Bounds)| -> Vec<f64> {
@@ -81,7 +80,7 @@ impl DesignObjective {
         let mut valleys: Vec<_> =
             (0..grid.len()).filter(is_least).map(|number| grid[number].clone()).collect();
         valleys.sort_by(|a, b| a.0.total_cmp(&b.0));
-        // Bounds make one design of several.
+        // Clamping to bounds may make designs equal.
         valleys.dedup_by(|a, b| a.1 == b.1);
         valleys
     }

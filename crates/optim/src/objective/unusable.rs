@@ -33,7 +33,7 @@ pub enum Unusable {
     /// The evaluation was stopped on the way.
     #[error("stopped before all of its runs were made")]
     Stopped,
-    /// Derivatives of what other starts than rest lead to, of a random motion or of a decay time were asked for.
+    /// Derivatives of motions from other starts than rest, of a random motion or of a decay time were requested.
     #[error(
         "derivatives of the response \"motions\", of random motion and of decay times are not known: give a largest value, and the response \
          \"window\" or \"settled\""
@@ -52,12 +52,12 @@ pub enum Unusable {
         /// The end of the run, s.
         to: f64,
     },
-    /// There is no steady motion: nothing damps a resonance.
+    /// There is no steady motion: a resonance is undamped.
     #[error(
         "it has no steady motion: nothing damps its resonance at omega = {omega} rad/s; give c1 or c2, or a band without it"
     )]
     Resonates {
-        /// Where, rad/s.
+        /// The frequency of the resonance, rad/s.
         omega: f64,
     },
     /// The steady motion reaches a wall, so that it is not linear.

@@ -137,7 +137,8 @@ pub fn minimize(
     Fminsearch::new(start, options)?.run(objective, log)
 }
 
-/// An objective and its cutoff: see [`minimize`]. A search is compiled once for all objectives, which take far longer than a call of them.
+/// An objective with a cutoff: see [`minimize`]. Dynamic, so that a search is compiled once: an evaluation takes far longer than a dynamic
+/// call.
 type Objective<'a> = &'a dyn Fn(&[f64], f64) -> f64;
 
 /// The whole state of a run, which may be interrupted and continued.

@@ -89,9 +89,9 @@ pub enum GlobalError {
 /// Searches the whole of `space`. `objective(parameters, cutoff)` is as in [`crate::minimize`]: no value is negative, and one above the
 /// cutoff need only be known to be above. `progress` is called after each evaluation, from any thread.
 ///
-/// A quarter of the samples is computed in full; of the others those that may be among the starts, which are so the same as if all were. A
-/// search counts a design that has more than one and a half times the least that it has found, and more than the median of its last generation,
-/// as one that has just so much: CMA-ES ranks designs, and by the better half in the first place.
+/// A quarter of the samples is computed in full; of the others only those that may be among the starts, so the starts are the same as if
+/// all were. A search caps the value of a design at the larger of one and a half times the least that it has found and the median of its
+/// last generation: CMA-ES only ranks designs, and mainly by the better half.
 ///
 /// # Errors
 /// [`GlobalError`].
@@ -101,13 +101,13 @@ pub fn explore(
     global: &Global,
     progress: impl Fn() + Sync,
 ) -> Result<Vec<Descent>, GlobalError> {
-    explored(&objective, space, global, &progress)
+    run_searches(&objective, space, global, &progress)
 }
 
-/// An objective and its cutoff, for searches side by side.
+/// An objective with a cutoff, for parallel searches.
 type Objective<'a> = &'a (dyn Fn(&[f64], f64) -> f64 + Sync);
 
-fn explored(
+fn run_searches(
     objective: Objective<'_>,
     space: &Space,
     global: &Global,
@@ -134,26 +134,26 @@ fn explored(
     values.extend(sampled(in_full..samples, cutoff));
     let known = (0..samples).map(|i| i < in_full || values[i] <= cutoff).collect();
     let apart = |i: usize, j: usize| space.distance(&place(i), &place(j)) >= global.apart;
-    let again = |i: usize| value(&place(i), f64::INFINITY);
-    let starts = best_apart_above(values, known, &again, global.searches, &apart);
+    let in_full_value = |i: usize| value(&place(i), f64::INFINITY);
+    let starts = best_apart_above(values, known, &in_full_value, global.searches, &apart);
     if starts.is_empty() {
         return Err(GlobalError::NoStart { samples: global.samples });
     }
-    let told = |x: &[f64], cutoff: f64| {
+    let reported = |x: &[f64], cutoff: f64| {
         let value = value(x, cutoff);
         progress();
         value
     };
     let search = |(number, (i, value)): (usize, (usize, f64))| {
-        search(&told, space, global, Point { x: place(i), value }, number)
+        search(&reported, space, global, Point { x: place(i), value }, number)
     };
     starts.into_par_iter().enumerate().map(search).collect()
 }
 
-/// How many times the least that a search has found is as bad as any more.
+/// Values above this multiple of the least that a search has found may be capped.
 const BAD: f64 = 1.5;
 
-/// The middle of some values, the lower one of two.
+/// The median of some values, the lower one of two.
 fn median(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -186,7 +186,7 @@ fn search(
     let seed = u64::from(global.seed) << 32 | number as u64;
     let solver = BoundedCmaEs::<Vec<f64>, DenseMatrix, f64>::new(seed, global.spread)
         .with_absolute_distribution_size_tolerance(global.tolerance);
-    // A generation costs its members and the mean.
+    // A generation evaluates its members and the mean.
     let generation = members as u64 + 1;
     let progress = PopulationProgress::from_point(space.coordinates(&start.x));
     let result = Executor::new(problem, solver, progress)
@@ -198,7 +198,7 @@ fn search(
     Ok(Descent { start, found, evaluations: seen.borrow().len() as u64 - 1 })
 }
 
-/// A closure as basin's problem.
+/// Adapts a closure to the crate `basin`.
 struct Cost<F>(F);
 
 impl<F> Constraints for Cost<F> {

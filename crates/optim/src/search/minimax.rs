@@ -1,8 +1,8 @@
-//! The least of the largest of several smooth functions, by their derivatives.
+//! Minimises the largest of several smooth functions, by their derivatives.
 //!
 //! The worst over a band is the largest of its peaks, and each peak is a smooth function of the design where motions are regular. At the
-//! optimum several are equally high: a kink, in which a simplex collapses before it arrives. Here each step is the minimum of the largest of
-//! all linearised peaks, a linear program, within a trust region (K. Madsen, An algorithm for minimax solution of overdetermined systems of
+//! optimum several are equally high: a kink, towards which a simplex collapses early. Here each step minimises the largest of all
+//! linearised peaks, a linear program, within a trust region (K. Madsen, An algorithm for minimax solution of overdetermined systems of
 //! non-linear equations, IMA J. Appl. Math. 16, 1975, its first stage). Linear programs are solved by the crate `microlp`.
 
 use crate::search::space::Space;
@@ -11,7 +11,7 @@ use microlp::{ComparisonOp, OptimizationDirection, Problem};
 /// One of the functions, at a design.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
-    /// Whether it is a limit, which is kept where the value is at most zero, and not one of those whose largest is made small.
+    /// Whether it is a limit, kept where the value is at most zero, instead of one of the functions whose largest is minimised.
     pub is_limit: bool,
     /// Its value.
     pub value: f64,
@@ -19,50 +19,50 @@ pub struct Piece {
     pub slope: Vec<f64>,
 }
 
-/// Half of the side of the trust region at first, in coordinates of [`Space`].
+/// Initial half side of the trust region, in coordinates of [`Space`].
 const FIRST: f64 = 0.03;
-/// Most steps that are tried with a weight.
+/// Most steps that are tried with one weight.
 const STEPS: usize = 60;
-/// Where a step promises a gain of nothing but the curvature of the functions, the region is about the root of that gain; below this share of
-/// it no step can bring the gain.
+/// A step whose predicted gain is due to curvature alone has a region of about the root of that gain; in a region below this share of
+/// the root of the required gain no step can bring it.
 const SMALL: f64 = 0.01;
-/// A step is taken if it brings this share of what was promised, and the region grows where it brings this share.
-const TAKEN: f64 = 0.1;
+/// A step is accepted if it brings the first share of the predicted gain, and the region grows if it brings the second.
+const ACCEPTED: f64 = 0.1;
 const GOOD: f64 = 0.7;
 
-/// By what a limit that is broken by its whole size weighs, as a share of the worst, at first. A descent that ends outside limits goes on with
-/// ten times the weight, up to the largest: near the least that a limit can be, it is worth any amount.
+/// Initial penalty of a limit that is broken by its whole size, as a share of the worst. A descent that ends outside limits continues with
+/// ten times the weight, up to the largest: near the tightest feasible limit, keeping it may need any weight.
 const WEIGHT: f64 = 20.0;
 const MOST_WEIGHT: f64 = 2e6;
-/// Steps are aimed this far inside limits, as shares of them, so that they are kept and not just met.
+/// Steps aim this far inside limits, as shares of them, so that rounding does not break them.
 const INSIDE: f64 = 1e-6;
 
-/// What a design has: the largest of the functions, and by how much it breaks the limits, as a share.
+/// The merit of a design: the largest of the functions, and the relative violation of the limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Height {
     /// The largest of the functions; infinite where the design has no value.
     pub worst: f64,
-    /// By how much limits are broken, 0 where they are kept.
+    /// Violation of the limits, 0 where they are kept.
     pub violation: f64,
 }
 
 impl Height {
-    /// Whether it is better: breaks limits by less, or keeps them too and has less.
+    /// Whether it is better: with less violation, or with equal violation and a lower worst.
     pub fn is_below(&self, other: &Self) -> bool {
         self.violation < other.violation || self.violation == other.violation && self.worst < other.worst
     }
 
-    /// What steps make smaller, as a share of `of`.
+    /// The penalised value that steps minimise, as a share of `of`.
     fn merit(&self, of: f64, weight: f64) -> f64 {
         self.worst / of + weight * self.violation
     }
 }
 
-/// Goes down from `start` in a box, and ends at the best design on the way: of those that break limits by least, the lowest.
+/// Descends from `start` in a box, and returns the best design on the way: the lowest of those with the least violation.
 ///
-/// `evaluate(parameters, cutoff)` may stop as soon as the worst is above the cutoff; what it returns beside the height is what `pieces` needs to
-/// find the functions of that design. A step is taken only where it pays, so that wrong derivatives cost time alone. The search ends where a
-/// step promises to lower the worst by less than the share `gain` of it, or where the trust region is too small for any that could.
+/// `evaluate(parameters, cutoff)` may stop as soon as the worst is above the cutoff; besides the height it returns what `pieces` needs to
+/// find the functions of that design. Only steps that gain are accepted, so wrong derivatives cost only time. The search ends where the
+/// predicted gain of a step is below the share `gain` of the worst, or where the trust region is too small for such a gain.
 pub fn minimax<T>(
     evaluate: impl Fn(&[f64], f64) -> (Height, T),
     pieces: impl Fn(&[f64], &T) -> Vec<Piece>,
@@ -77,9 +77,9 @@ pub fn minimax<T>(
     }
     let (mut x, mut here) = (start.to_vec(), pieces(start, &seen));
     let (mut radius, mut tried, mut weight) = (FIRST, 0, WEIGHT);
-    while let Some((to, promised)) = step(&here, height.worst, space, &x, radius, weight) {
-        // Within the region the linear functions are wrong by its square.
-        if promised < gain || radius < SMALL * gain.sqrt() || tried == STEPS {
+    while let Some((to, predicted)) = step(&here, height.worst, space, &x, radius, weight) {
+        // The error of the linear functions within the region is of the order of its square.
+        if predicted < gain || radius < SMALL * gain.sqrt() || tried == STEPS {
             if height.violation == 0.0 || weight >= MOST_WEIGHT {
                 break;
             }
@@ -89,17 +89,17 @@ pub fn minimax<T>(
         tried += 1;
         let cutoff = if here.iter().any(|piece| piece.is_limit) { f64::INFINITY } else { height.worst };
         let (found, seen) = evaluate(&to, cutoff);
-        let brought = (height.merit(height.worst, weight) - found.merit(height.worst, weight)) / promised;
+        let ratio = (height.merit(height.worst, weight) - found.merit(height.worst, weight)) / predicted;
         if found.is_below(&best.1) {
             best = (to.clone(), found);
         }
-        if brought > TAKEN {
+        if ratio > ACCEPTED {
             here = pieces(&to, &seen);
             (x, height) = (to, found);
         }
-        radius *= if brought > GOOD {
+        radius *= if ratio > GOOD {
             2.0
-        } else if brought > TAKEN {
+        } else if ratio > ACCEPTED {
             1.0
         } else {
             0.25
@@ -108,7 +108,7 @@ pub fn minimax<T>(
     best
 }
 
-/// The step that is best for the linearised functions, and by how much it lowers their merit; none where there is nothing to go by.
+/// The optimal step for the linearised functions, and its predicted gain in merit; none without usable functions.
 fn step(
     pieces: &[Piece],
     worst: f64,
@@ -131,7 +131,7 @@ fn step(
         let value = if piece.is_limit { value + INSIDE } else { value };
         let reached = if piece.is_limit { &mut most_broken } else { &mut highest };
         *reached = reached.max(value);
-        let along = piece.slope.iter().zip(&slopes).map(|(own, slope)| own * slope / scale);
+        let along = piece.slope.iter().zip(&slopes).map(|(by_value, slope)| by_value * slope / scale);
         let row: Vec<_> = moves.iter().copied().zip(along).chain([(slack, -1.0)]).collect();
         program.add_constraint(row, ComparisonOp::Le, -value);
     }

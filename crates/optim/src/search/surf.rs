@@ -71,7 +71,7 @@ pub fn best_separated(grid: &Grid, values: &[f64], count: usize, min_steps: usiz
     best_apart(values, count, &steps_apart(grid, min_steps))
 }
 
-/// Whether two points of a grid are so many steps apart along some axis.
+/// Whether two points of a grid are at least `min_steps` steps apart along some axis.
 fn steps_apart(grid: &Grid, min_steps: usize) -> impl Fn(usize, usize) -> bool {
     let steps = move |i: usize| {
         let mut steps = vec![0; grid.dim()];
@@ -98,8 +98,8 @@ fn best_apart(values: &[f64], count: usize, apart: &dyn Fn(usize, usize) -> bool
     taken
 }
 
-/// As [`best_separated`] by values of which `lower` are lower bounds: only the points that may be among the best are evaluated, some at a
-/// time. Returns their numbers, best first, and their values.
+/// As [`best_separated`], with `lower` bounds on the values: only the points that may be among the best are evaluated, in batches. Returns
+/// the numbers of the best, best first, and their values.
 ///
 /// A point that is not evaluated has a larger lower bound than those chosen, or is too near to one that is better.
 ///
@@ -117,8 +117,8 @@ pub fn best_separated_above(
     best_apart_above(lower.to_vec(), none_known, &value, count, &steps_apart(grid, min_steps))
 }
 
-/// [`best_apart`] by `values` of which all that are not `known` are lower bounds: of these only such are evaluated as may be among the best, some
-/// at a time. Their numbers, best first, and their values.
+/// [`best_apart`] where `values` that are not `known` are lower bounds: of these only those that may be among the best are evaluated, in
+/// batches. Returns the numbers of the best, best first, and their values.
 pub(crate) fn best_apart_above(
     mut values: Vec<f64>,
     mut known: Vec<bool>,

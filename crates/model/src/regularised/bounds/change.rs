@@ -1,9 +1,9 @@
-//! How far a contact may go between two states: bounds that hold where the series of a loss has none.
+//! Bounds on how far a contact may go between two states. They hold even where the slope of a loss is unbounded.
 
 use super::stages::Stages;
 use crate::regularised::{RegularisedContact, RegularisedState};
 
-/// Bounds between two states, each the most and how far it may be from what it is at the nearer of the two.
+/// Bounds between two states: of each quantity the largest size, and the largest deviation from its value at the nearer state.
 #[derive(Clone, Copy, Debug)]
 pub struct Change {
     /// Of the four numbers of [`Growth`](super::Growth), m and m/s.
@@ -23,11 +23,11 @@ pub struct Forces {
     pub contact: [f64; 2],
     /// By how much the external force may differ from that at the nearer state, as a share of the bound on it.
     pub turn: f64,
-    /// The rate of `[x1, v1, x2, v2]` over that contact's force: of both speeds, m^-0.5 s^-2.
+    /// The rate of `[x1, v1, x2, v2]` per unit of `contact`, zero but for both speeds, m^-0.5 s^-2.
     pub kick: [f64; 4],
 }
 
-/// What is known of one of the two states.
+/// One of the two states, with its contact force and rates.
 pub(super) struct End {
     y: RegularisedState,
     /// `q³` times the factor of a loss.
@@ -36,7 +36,7 @@ pub(super) struct End {
     rates: [f64; 2],
 }
 
-/// How far a piece goes from the nearer state, at most.
+/// The largest deviations of a piece from the nearer state.
 struct Excursion {
     /// Half of its duration, s.
     half: f64,
@@ -48,8 +48,9 @@ struct Excursion {
     contact: f64,
 }
 
-/// The square of half the angle (rad) by which spring and wall turn the damper in a piece beyond which [`RegularisedContact::change_by_rates`] follows
-/// no guess any further. Measured: few are confirmed there, and bounds by energy cost less than the search for one.
+/// The square of half the angle (rad) by which spring and wall turn the damper in a piece, beyond which
+/// [`RegularisedContact::change_by_rates`] makes two guesses at most. Measured: few are confirmed there, and bounds by energy cost less
+/// than more guesses.
 const FAR: f64 = 0.3;
 
 /// The greater of two numbers, NaN if one of them is.
@@ -64,24 +65,24 @@ fn largest([a, b]: &[End; 2]) -> ([f64; 4], [f64; 2]) {
 }
 
 impl RegularisedContact {
-    /// What is known of a state.
+    /// The [`End`] at a state.
     pub(super) fn end(&self, y: &RegularisedState) -> End {
         let contact = self.contact_over_stiffness(y);
         let [rate, a1] = self.accelerations_by(contact, y);
         End { y: *y, contact, rates: [a1, rate] }
     }
 
-    /// [`Self::change`] where the speed does not follow the forces.
+    /// [`Self::change`] of a contact that is not overdamped, by bounds on its rates.
     ///
-    /// As long as no number has gone farther from the nearer state than a guess, no rate differs by more from the rate there than follows from the
-    /// guess; the proof holds if these rates do not lead beyond the guess in `h/2`. The factor of a loss is a function of `q` and `w`, monotone in
-    /// both where `w` has one sign, so that its range follows from corners: no slope of it is asked for, which has no bound where `v` vanishes.
+    /// As long as no number deviates from the nearer state by more than a guess, the guess also bounds how far each rate deviates from the
+    /// rate there. The proof holds if these rates do not lead beyond the guess in `h/2`. The factor of a loss is a function of `q` and `w`,
+    /// monotone in both where `w` has one sign, so its range follows from corners. Its slope, unbounded where `v` vanishes, is not needed.
     ///
-    /// Where spring and wall turn the damper by more than about a radian, a guess that is not confirmed soon grows faster than it is followed.
+    /// Where spring and wall turn the damper by more than about a radian, the guesses diverge unless one is confirmed soon.
     pub(super) fn change_by_rates(&self, h: f64, ends: &[End; 2]) -> Option<Change> {
         let ([q, w, x1, v1], [a1, rate]) = largest(ends);
         let slopes = [0.5 * w, q * rate, q * v1, q * a1];
-        // With room for how far these slopes change: most pieces need no more.
+        // With a margin for changes of these slopes: most pieces need no second guess.
         let mut within = slopes.map(|slope| 0.6 * h * slope);
         let stiffness = self.spring[1] + 1.5 * self.law[0] * self.hertz[1] * q;
         let tries = if 0.25 * (h * q).powi(2) * stiffness > FAR { 2 } else { 8 };
@@ -108,7 +109,8 @@ impl RegularisedContact {
         None
     }
 
-    /// The same where the damper swings against its spring and the wall, however far it swings; `None` if the structure moves too much for the proof.
+    /// [`Self::change`] by the energy of a damper that swings against its spring and the wall, however far; `None` if the structure moves
+    /// too much for the proof.
     ///
     /// With `U` the energy of both springs over the effective mass, `a` the acceleration that the rest of the structure's forces give the
     /// damper into the wall, and `a0` that at the start, `ε² = w² + 2 (U(z) - a0 z - least)` changes by `dε/dt <= |a - a0|`, since dashpot and losses only
@@ -127,7 +129,7 @@ impl RegularisedContact {
             _ => spring,
         };
         let begin = (w0 * w0 + pushed * pushed / least).sqrt();
-        let deepest = z0 + (-pushed / here).max(0.0); // of where U' = a0
+        let deepest = z0 + (-pushed / here).max(0.0); // a bound on the z where U' = a0
         let (force, turn) = (self.amplitude, self.primary[0] * self.most_turn());
         let (at_ends, _) = largest(ends);
         let mut most = at_ends;
@@ -167,7 +169,7 @@ impl RegularisedContact {
         None
     }
 
-    /// How far `a1` and `dw/dt` are from what they are at the nearer state, at most.
+    /// Bounds on the deviations of `a1` and `dw/dt` from the nearer state.
     fn of_rates(
         &self,
         &Excursion { half, numbers: [_, of_w, of_x1, of_v1], stretch, contact }: &Excursion,
@@ -182,7 +184,7 @@ impl RegularisedContact {
         })
     }
 
-    /// The change of a piece that goes so far, where its numbers `[q, w, x1, v1]` and its rates are at most these.
+    /// The [`Change`] of a piece from its `excursion` and bounds on its `[q, w, x1, v1]` and rates.
     fn change_of(
         &self,
         ends: &[End; 2],
@@ -223,14 +225,14 @@ impl RegularisedContact {
         if self.is_linear() { self.force[1] } else { self.omega * self.amplitude }
     }
 
-    /// The sums of the sizes of all terms of `a1` and of `dw/dt`, m/s², of bounds on `[q, w, x1, v1]` and on what the force adds to `a1`.
+    /// The sums of the sizes of all terms of `a1` and of `dw/dt`, m/s², from bounds on `[q, w, x1, v1]` and on what the force adds to `a1`.
     fn sizes_of_rates(&self, excitation: f64, &[q, w, x1, v1]: &[f64; 4]) -> [f64; 2] {
         let (stretch, contact) = (q * q + self.stretch.abs(), q * q * q * self.most(w));
         let outside = excitation + self.primary[1] * v1 + self.primary[2] * x1;
         [0, 1].map(|i| outside + self.hertz[i] * contact + self.dashpot[i] * w + self.spring[i] * stretch)
     }
 
-    /// How far `q³` times the factor of a loss is from what it is at a state, at most, where `q` and `w` lie between these.
+    /// A bound on the deviation of `q³` times the factor of a loss from its value at a state, for `q` and `w` in these ranges.
     fn contact_within(&self, end: &End, depths: [f64; 2], w: [f64; 2]) -> f64 {
         let depths = depths.map(|q| q.max(0.0));
         let factors = self.factors_between(depths, w);
@@ -240,7 +242,7 @@ impl RegularisedContact {
         (most - end.contact).max(end.contact - least)
     }
 
-    /// The least and the greatest factor of a loss where `q` and `w` lie between these.
+    /// The least and the greatest factor of a loss for `q` and `w` in these ranges.
     fn factors_between(&self, q: [f64; 2], w: [f64; 2]) -> [f64; 2] {
         let Some(law) = &self.restoring else {
             return w.map(|w| self.law[0] + self.law[1] * w);

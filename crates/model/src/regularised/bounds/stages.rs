@@ -33,20 +33,21 @@ pub struct Stages<'a> {
 }
 
 impl<'a> Stages<'a> {
-    /// Those where `S` and `w` lie between these. `v` grows with `S` and the size of `w`.
+    /// Bounds for `S` and `w` in these ranges. `v` grows with `S` and the size of `w`.
     pub fn between(law: &'a Restoring, s: [f64; 2], w: [f64; 2]) -> Self {
         let h = Self::corners(s, w).map(|[s, w]| law.stage(s, w).h);
         let slowest = law.stage(s[0], 0.0_f64.max(w[0]).min(w[1]));
         Self { law, h, slowness: 1.0 / slowest.v }
     }
 
-    /// Where `h` is least and greatest as `S` and `w` lie between these: it grows with `w`, and for a `w` of one sign it nears 0 as `S` grows.
+    /// The `[S, w]` of the least and the greatest `h` in these ranges: `h` grows with `w`, and for a `w` of one sign it nears 0 as `S`
+    /// grows.
     pub fn corners([shallow, deep]: [f64; 2], [slow, fast]: [f64; 2]) -> [[f64; 2]; 2] {
         [[if slow < 0.0 { shallow } else { deep }, slow], [if fast > 0.0 { shallow } else { deep }, fast]]
     }
 }
 
-/// Series with every term by its size.
+/// Series with every term replaced by its size.
 pub struct StageSeries<const K: usize> {
     chi: f64,
     h: [f64; K],

@@ -43,7 +43,7 @@ struct Logged<'a> {
 }
 
 impl Logged<'_> {
-    /// Logs the last row, and passes it on as argmin's state.
+    /// Logs the last row, and returns it as argmin's state.
     fn report(&mut self, is_new: bool, state: State) -> (State, Option<KV>) {
         let row = self.run.row();
         if is_new {
