@@ -1,4 +1,4 @@
-//! A value of what a study makes small, which its files call by the name of that quantity: `"E1max": 225.8`, `"x1max": 0.021`.
+//! A value of the quantity that a study minimises, which its files call by the name of that quantity: `"E1max": 225.8`, `"x1max": 0.021`.
 
 use retune_model::Measure;
 use retune_study::{rounded, short};
@@ -9,19 +9,19 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 pub struct Amount {
     /// What is measured.
     pub quantity: Measure,
-    /// What follows the name of the quantity in the name of the entry: `_none` of `E1max_none`.
+    /// Suffix of the name of the entry: `_none` in `E1max_none`.
     suffix: &'static str,
     /// The value, in the unit of the quantity.
     pub value: f64,
 }
 
 impl Amount {
-    /// A value of a quantity, by its name alone.
+    /// A value of a quantity, named by the quantity alone.
     pub fn new(quantity: Measure, value: f64) -> Self {
         Self { quantity, suffix: "", value }
     }
 
-    /// One that is told from others of its object by `suffix`.
+    /// A value of a quantity, with a suffix that distinguishes it from others in one object.
     pub fn of(quantity: Measure, suffix: &'static str, value: f64) -> Self {
         Self { quantity, suffix, value }
     }

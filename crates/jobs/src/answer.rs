@@ -1,27 +1,27 @@
 //! The answer of a job as JSON: the file without which its results are not complete.
 
 use crate::Error;
-use crate::again::{self, each_row};
 use crate::columns::column;
+use crate::recompute::{self, each_row};
 use retune_report::table::{Cell, Table};
 use retune_store::json_text;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::path::Path;
 
-/// The answer that stands in a file of results: JSON as it is; a table with the units of its columns; of a page, the statements beside it.
+/// The answer in a file of results: JSON unchanged; a table with the units of its columns; for a page, the statements beside it.
 pub fn as_json(file: &Path) -> Result<String, Error> {
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     let place = file.parent().unwrap_or(Path::new(""));
     let value = match file.extension().and_then(|ending| ending.to_str()) {
         Some("csv") => table(file)?.json(),
         Some("html") => statements(place)?,
-        _ => return Ok(again::text(place, &name)?.trim_end().to_owned()),
+        _ => return Ok(recompute::text(place, &name)?.trim_end().to_owned()),
     };
     Ok(json_text(&value, &name)?.trim_end().to_owned())
 }
 
-/// An answer as indented JSON, as files of results have it.
+/// An answer as indented JSON, as in files of results.
 pub fn text(answer: &impl Serialize) -> Result<String, Error> {
     Ok(json_text(answer, "standard output")?.trim_end().to_owned())
 }
@@ -54,7 +54,7 @@ fn statements(place: &Path) -> Result<Value, Error> {
     let mut all = Map::new();
     for name in retune_store::plain::names(place).map_err(refuse)? {
         if let Some(item) = name.strip_suffix(ENDING) {
-            all.insert(item.to_owned(), again::json(place, &name)?);
+            all.insert(item.to_owned(), recompute::json(place, &name)?);
         }
     }
     Ok(Value::Object(all))

@@ -1,16 +1,15 @@
-//! The files that each kind of job makes. From these lists follow the files that a job may replace, and how `verify` computes each
-//! of them again.
+//! The files that each kind of job makes. These lists determine which files a job may replace, and how `verify` recomputes each of them.
 
-use crate::again::{Rows, Whole};
+use crate::recompute::{Rows, Whole};
 
-/// The contents of a file of results, and so how they are computed again.
+/// The kind of contents of a file of results, which determines how they are recomputed.
 #[derive(Clone, Copy, Debug)]
 pub enum Content {
-    /// The complete input that all the other files follow from; the manifest holds its hash.
+    /// The complete input, from which all other files follow; the manifest holds its hash.
     Input,
-    /// A table, whose rows can be computed one by one.
+    /// A table whose rows can be recomputed one by one.
     Rows(Rows),
-    /// What is made again as a whole.
+    /// Files that are recomputed as a whole.
     Whole(Whole),
     /// Numbers of the other files as text or figure, the log of a search, the manifest: checked by their hash alone.
     Derived,
@@ -19,7 +18,7 @@ pub enum Content {
 /// A kind of job, with all files that it makes: each list in the order in which `verify` reports on them, `*` in a name for any text.
 #[derive(Debug)]
 pub struct Kind {
-    /// The command that asks for it, by which manifests name it.
+    /// The command of the job, also its name in manifests.
     pub command: &'static str,
     /// The file without which its results are not complete.
     pub answer: &'static str,
@@ -27,9 +26,9 @@ pub struct Kind {
     pub input: &'static str,
     /// Its tables.
     pub rows: &'static [(&'static str, Rows)],
-    /// What is made again as a whole.
+    /// Files that are recomputed as a whole.
     pub whole: &'static [(&'static str, Whole)],
-    /// What is derived from the others.
+    /// Files derived from the others.
     pub derived: &'static [&'static str],
 }
 
@@ -52,7 +51,7 @@ impl Kind {
         input.chain(rows).chain(whole).chain(self.derived.iter().map(|name| (*name, Content::Derived)))
     }
 
-    /// Its files in words: those that it makes of any study, some of them only where the study asks for it.
+    /// Its files in words, including those that it makes only where the study asks for them.
     pub fn words(&self) -> String {
         let names: Vec<&str> = self.files().map(|(name, _)| name).collect();
         format!("`retune {}` makes {}", self.command, names.join(" "))

@@ -1,7 +1,8 @@
-//! The job `branches`: every periodic motion that runs of a scene lead to along a parameter, and those that branch off; which of them
-//! are stable, where they begin and end and by which bifurcation, what coexists, and the largest E1max over all of it.
+//! The job `branches`: the periodic motions that runs of a scene settle on along a parameter, and those that branch off; their stability,
+//! bifurcations and coexistence, and the largest E1max of all.
 //!
-//! The motions are found by `retune_dynamics::periodic`. Read `options` (what is asked for), `motions` (what is found), `tables` (what is written, and how rows are computed again), `draw`, `page`.
+//! The motions are found by `retune_dynamics::periodic`. Read `options` (the request), `motions` (the result), `tables` (the files, and how
+//! their rows are recomputed), `draw`, `page`.
 
 mod draw;
 mod motions;
@@ -28,10 +29,10 @@ pub static KIND: Kind = Kind {
     answer: "branches.json",
     input: resolved::SEVERAL,
     rows: &[
-        (tables::BRANCHES, tables::again),
-        (tables::BIFURCATIONS, tables::again),
-        (tables::ATTRACTORS, tables::again),
-        (tables::STARTS, tables::again),
+        (tables::BRANCHES, tables::recompute),
+        (tables::BIFURCATIONS, tables::recompute),
+        (tables::ATTRACTORS, tables::recompute),
+        (tables::STARTS, tables::recompute),
     ],
     whole: &[],
     derived: &[tables::STATES, "branches.json", "branches.svg", "basins.svg", "README.md", "report.html"],
@@ -45,14 +46,14 @@ pub fn branches(request: &Request, options: &Options, watch: &dyn Observer) -> R
     let study = read(&request.study)?;
     let (plan, basins_at) = options.plan(&study)?;
     let request = request.placed(KIND.command, &study, plan.parameter.symbol())?;
-    let mut said = plan_json(&plan);
+    let mut plan_values = plan_json(&plan);
     if options.margin {
-        said["margin"] = true.into();
+        plan_values["margin"] = true.into();
     }
     if let Some(value) = basins_at {
-        said["basins"] = value.into();
+        plan_values["basins"] = value.into();
     }
-    let job = Job::of_studies(&KIND, &request, said, [(study.name(), &study)].into_iter())?;
+    let job = Job::of_studies(&KIND, &request, plan_values, [(study.name(), &study)].into_iter())?;
     job.run(&request, watch, |directory| {
         let bar = watch.progress("runs from many starts", plan.samples as u64);
         let count = Control { done: &|| bar.inc(1), ..Control::default() };

@@ -11,9 +11,9 @@ pub use certificate::{Certificate, Verdict};
 pub(crate) use certificate::{Measured, periodic};
 pub(crate) use walls::Walls;
 
-use crate::again::{Made, json};
 use crate::artefact::Kind;
 use crate::job::{Job, open, where_results_are};
+use crate::recompute::{Recomputed, json};
 use crate::resolved::{self, identity_of};
 use crate::{Error, Observer, Request};
 use measure::OtherStarts;
@@ -26,7 +26,7 @@ use std::path::Path;
 /// The file that a certificate is written to.
 pub const FILE: &str = "certificate.json";
 
-/// The files of a certificate that does not stand beside the search that found its design.
+/// The files of a certificate outside the results of a search.
 pub static KIND: Kind = Kind {
     command: "certify",
     answer: FILE,
@@ -36,8 +36,8 @@ pub static KIND: Kind = Kind {
     derived: &[],
 };
 
-/// Certifies the design of a study, or the one that a search found: `request.study` is a study, an `optimum.json`, or the directory of
-/// a search's results. The certificate goes beside an optimum, or to `results/certify/<study>`, unless told otherwise.
+/// Certifies the design of a study, or the one that a search found: `request.study` is a study, an `optimum.json`, or the directory of a
+/// search's results. By default the certificate is written beside the optimum, else to `results/certify/<study>`.
 ///
 /// # Errors
 /// The input is wrong, the design cannot be run, or the certificate cannot be written.
@@ -45,7 +45,7 @@ pub fn certify_file(request: &Request, watch: &dyn Observer) -> Result<Certifica
     let (study, found_in) = (study::read(&request.study)?, study::found_in(&request.study)?);
     let out = request.out.clone().or(found_in.clone());
     let out = out.unwrap_or_else(|| Path::new("results/certify").join(study.name()));
-    // Beside the search that found the design, whose study and manifest stay.
+    // Written beside the search that found the design: its study and manifest are kept.
     let beside = found_in.is_some_and(|found_in| is_same(&found_in, &out));
     if !beside && out.join("optimum.json").exists() {
         let source = std::io::Error::other("the results of a search stand there; give another --out");
@@ -82,34 +82,36 @@ pub fn certify(study: &Study) -> Result<Certificate, Error> {
     Ok(complete(study, measure::measure(study, damper_of(study)?, OtherStarts::Always)?))
 }
 
-/// A certificate of the damper of a study that has all but the value between other walls, with that too.
+/// Completes the certificate of a study's damper with the values for other walls and other records.
 pub(crate) fn complete(study: &Study, certificate: Certificate) -> Certificate {
-    let (own, sensitivity) = (certificate.value, &certificate.measured.sensitivity);
-    let walls = walls::other_walls(study, own, sensitivity, certificate.strikes());
-    Certificate { walls, records: records::other_records(study, own), ..certificate }
+    let (value, sensitivity) = (certificate.value, &certificate.measured.sensitivity);
+    let walls = walls::other_walls(study, value, sensitivity, certificate.strikes());
+    Certificate { walls, records: records::other_records(study, value), ..certificate }
 }
 
-/// The certificate of the damper of a study, made again.
-fn of_study(place: &Path, name: &str) -> Result<Made, Error> {
+/// Recomputes the certificate of the damper of a study.
+fn of_study(place: &Path, name: &str) -> Result<Recomputed, Error> {
     let study = study::read(&place.join(resolved::ONE))?;
-    Ok(again(&study, json(place, name)?))
+    Ok(recompute(&study, json(place, name)?))
 }
 
-/// A certificate of the damper in the scene of a study, made again beside what a file says.
-pub(crate) fn again(study: &Study, said: serde_json::Value) -> Made {
+/// Recomputes the certificate of the damper in the scene of a study, to compare it with `stored`.
+pub(crate) fn recompute(study: &Study, stored: serde_json::Value) -> Recomputed {
     match certify(study) {
-        Ok(again) => Made::Of { what: "all of it", said, again: serde_json::json!(again) },
-        Err(error) => Made::Not(format!("cannot be made again: {error}")),
+        Ok(recomputed) => {
+            Recomputed::Part { what: "all of it", stored, recomputed: serde_json::json!(recomputed) }
+        }
+        Err(error) => Recomputed::Failed(format!("cannot be made again: {error}")),
     }
 }
 
-/// The same as far as the verdict goes: other starts than rest are not looked at where it is decided without, nor are other walls.
+/// A certificate as far as the verdict needs it: starts other than rest only where they decide it, and no other walls.
 pub fn judge(study: &Study) -> Result<Certificate, Error> {
     measure::measure(study, damper_of(study)?, OtherStarts::WhereTheyDecide)
 }
 
-/// The same in seconds where contacts lose energy too, through which derivatives take long: what a few other starts lead to is looked at, and
-/// no branch is followed, nor the force raised.
+/// As [`judge`], but in seconds even with contacts that lose energy, where derivatives are slow: a few other starts are run, no branch is
+/// followed, and the force is not raised.
 pub fn judge_in_seconds(study: &Study) -> Result<Certificate, Error> {
     measure::measure(study, damper_of(study)?, OtherStarts::FewWhereTheyDecide)
 }
@@ -125,8 +127,8 @@ fn damper_of(study: &Study) -> Result<&Damper, Error> {
 /// Refuses the results of a search in `out` whose design breaks the limits of its study by [`Error::Infeasible`].
 pub fn check_limits_in(out: &Path, study: &str) -> Result<(), Error> {
     let text = std::fs::read_to_string(out.join(FILE)).unwrap_or_default();
-    let said: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
-    match (said.get("verdict"), said["words"].as_str()) {
+    let stored: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    match (stored.get("verdict"), stored["words"].as_str()) {
         (Some(serde_json::Value::Null), Some(words)) => {
             Err(Error::Infeasible { name: study.to_owned(), words: words.to_owned() })
         }

@@ -1,4 +1,4 @@
-//! Columns of tables, out of the catalogue of parameters and quantities.
+//! Columns of tables, from the catalogue of parameters and quantities.
 
 use retune_model::{Design, Measure, Parameter};
 use retune_report::table::{Cell, Column, Table};
@@ -6,16 +6,16 @@ use retune_report::table::{Cell, Column, Table};
 /// The numbers of a state `[x1, v1, x2, v2]`, with their SI units.
 pub const STATE: [(&str, &str); 4] = [("x1", "m"), ("v1", "m/s"), ("x2", "m"), ("v2", "m/s")];
 
-/// The column of a name: in the SI unit of the parameter, the quantity or the number of a state that has this name, alone or before `_`, as in
-/// `E1max_none`; else without a unit.
+/// The column of a name: in the SI unit of the parameter, quantity or state variable of this name, alone or before `_`, as in `E1max_none`;
+/// else without a unit.
 pub fn column(name: &str) -> Column {
     let parameters = Parameter::ALL.map(|parameter| (parameter.symbol(), parameter.unit()));
     let measures = Measure::every().map(|measure| (measure.name(), measure.unit()));
-    let is_it = |(known, _): &(&str, &'static str)| {
+    let matches = |(known, _): &(&str, &'static str)| {
         name.strip_prefix(known).is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
     };
-    // `base_acceleration` begins with `base`, too.
-    let known = parameters.into_iter().chain(measures).chain(STATE).filter(is_it);
+    // The longest match wins: `base_acceleration` also begins with `base`.
+    let known = parameters.into_iter().chain(measures).chain(STATE).filter(matches);
     let known = known.max_by_key(|(known, _)| known.len());
     Column::new(name, known.map_or("", |(_, unit)| unit))
 }
@@ -25,7 +25,7 @@ pub fn table(names: &[&str]) -> Table {
     Table::new(names.iter().copied().map(column))
 }
 
-/// The parameters of a table of designs: the paper's, and what else is in one of them.
+/// The parameters of a table of designs: the paper's, and any other that a design has.
 pub fn of_designs<'a>(designs: impl Iterator<Item = &'a Design> + Clone) -> Vec<Parameter> {
     let has = |of: &Parameter| designs.clone().any(|design| !design.get(*of).is_nan());
     let others: Vec<Parameter> = Parameter::VARIED.into_iter().filter(has).collect();
@@ -37,7 +37,7 @@ pub fn symbols(parameters: &[Parameter]) -> Vec<&'static str> {
     parameters.iter().map(|parameter| parameter.symbol()).collect()
 }
 
-/// The cells of a design; empty where it leaves a parameter out, as that of gaps without walls.
+/// The cells of a design; empty for parameters that it does not have, such as gaps without walls.
 pub fn cells_of(design: &Design, parameters: &[Parameter]) -> Vec<Cell> {
     parameters.iter().map(|parameter| design.get(*parameter).into()).collect()
 }

@@ -1,4 +1,4 @@
-//! What the contacts of a run are like, and where its energy goes: in words, and as data.
+//! The contacts of a run and its energy balance, in words and as data.
 
 use retune_model::{Coupled, HERTZ_YIELD, Measure, Parameter, Scene, Side, Surfaces};
 use retune_optim::Need;
@@ -6,22 +6,22 @@ use retune_solver::{Collisions, Losses, Window, simulate_in_detail};
 use retune_study::{Setting, Study, counted, rounded};
 use serde::Serialize;
 
-/// The share of R above which the radius of the contact area is no longer small, as Hertz's theory takes it to be.
+/// Radius of the contact area, as a share of R, above which it is not small as Hertz's theory assumes.
 const WIDE: f64 = 1.0 / 3.0;
-/// A contact is quasi-static, as Hertz's theory takes it to be, where a wave passes the damper and comes back so many times while it lasts.
+/// A contact is quasi-static, as Hertz's theory assumes, if it lasts at least this many round trips of a wave through the damper.
 const WAVES: f64 = 5.0;
 
-/// The share by which the largest force of one run may differ from itself, found between the samples of an objective.
+/// Relative difference up to which two largest forces are taken to be of the same run; one may be a peak found between samples.
 const SAME: f64 = 0.01;
 
-/// The contacts with both walls in a run; none with a wall that is not touched.
+/// The contacts with both walls in a run; none for a wall that is not touched.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Contacts {
     structure: Option<Wall>,
     obstacle: Option<Wall>,
 }
 
-/// The contacts with one wall: the largest value of each. SI units.
+/// The contacts with one wall: their largest values. SI units.
 #[derive(Clone, Copy, Debug, Serialize)]
 struct Wall {
     impacts: u64,
@@ -32,23 +32,23 @@ struct Wall {
     /// Duration of the shortest and of the longest contact, null if none has begun and ended.
     shortest: f64,
     longest: f64,
-    /// None of a rigid wall.
+    /// None for a rigid wall.
     #[serde(skip)]
-    known: Option<Known>,
+    validity: Option<Validity>,
 }
 
-/// What Hertz's law is judged by. SI units.
+/// The properties by which the validity of Hertz's law is checked. SI units.
 #[derive(Clone, Copy, Debug)]
-struct Known {
+struct Validity {
     /// R.
     radius: f64,
     /// The yield strength, where it is given.
     strength: Option<f64>,
-    /// The time of a wave through the damper and back, where its density is given.
+    /// The round-trip time of a wave through the damper, where its density is given.
     wave: Option<f64>,
 }
 
-impl Known {
+impl Validity {
     fn of(surfaces: &Surfaces, side: Side, mass: f64) -> Self {
         let strength = surfaces.strength.map(f64::from);
         Self {
@@ -60,7 +60,7 @@ impl Known {
 }
 
 impl Contacts {
-    /// Of a scene, from those of a run of it; none if it touches no wall.
+    /// The contacts of a scene from the collisions of a run; none if it touches no wall.
     pub fn new(scene: &Scene, found: [Collisions; 2]) -> Option<Self> {
         let damper = scene.damper.filter(|damper| damper.contact.is_some())?;
         let system = Coupled::new(&scene.primary, &scene.forcing, &damper);
@@ -78,15 +78,15 @@ impl Contacts {
                 },
                 shortest,
                 longest,
-                known: surfaces.as_ref().map(|surfaces| Known::of(surfaces, side, damper.mass.get())),
+                validity: surfaces.as_ref().map(|surfaces| Validity::of(surfaces, side, damper.mass.get())),
             })
         };
         let [structure, obstacle] = Side::BOTH.map(wall);
         (structure.is_some() || obstacle.is_some()).then_some(Self { structure, obstacle })
     }
 
-    /// Of the run from rest of a scene by a study where it strikes its walls hardest, at the place of its largest contact force; none where it strikes
-    /// none, or cannot be run there, or where that run has another force: it is then one of another record, or of a member of an ensemble.
+    /// The contacts of the run from rest with the largest contact force, `force`. None without contacts, where that run fails, or where it
+    /// reproduces another force: `force` is then from another record or a member of an ensemble.
     pub fn hardest(study: &Study, scene: &Scene, force: Need) -> Option<Self> {
         let Need { value, omega, k1, restitution } = force;
         let mut there = vec![Setting::new(Parameter::K1, k1)];
@@ -102,9 +102,9 @@ impl Contacts {
             return None;
         }
         let (run, _, found) = simulate_in_detail(&scene, whole, &study.solver.settings()).ok()?;
-        let own = run.largest(Measure::ContactForce);
-        let is_it = own == value || (own - value).abs() <= SAME * value;
-        is_it.then(|| Self::new(&scene, found)).flatten()
+        let reached = run.largest(Measure::ContactForce);
+        let is_same_run = reached == value || (reached - value).abs() <= SAME * value;
+        is_same_run.then(|| Self::new(&scene, found)).flatten()
     }
 
     fn walls(&self) -> impl Iterator<Item = (&'static str, &Wall)> {
@@ -116,7 +116,7 @@ impl Contacts {
         self.walls().map(|(name, wall)| format!("{name}: {}", wall.words())).collect()
     }
 
-    /// Where the law of the contact is used outside of what it holds for.
+    /// Warnings where the contact law is used outside its range of validity.
     pub fn warnings(&self) -> Vec<String> {
         let of = |(name, wall): (&str, &Wall)| {
             let all = [wall.wide(), wall.yields(), wall.fast()];
@@ -127,34 +127,36 @@ impl Contacts {
 }
 
 impl Wall {
-    /// That its area is not small.
+    /// A warning if the contact area is not small.
     fn wide(&self) -> Option<String> {
-        let radius =
-            self.known.map(|known| known.radius).filter(|radius| self.contact_radius > WIDE * radius)?;
-        let [own, radius] = [self.contact_radius, radius].map(millimetres);
+        let radius = self
+            .validity
+            .map(|validity| validity.radius)
+            .filter(|radius| self.contact_radius > WIDE * radius)?;
+        let [contact_radius, radius] = [self.contact_radius, radius].map(millimetres);
         Some(format!(
-            "the contact area has a radius of {own}, more than a third of R = {radius}: Hertz's law holds for small areas"
+            "the contact area has a radius of {contact_radius}, more than a third of R = {radius}: Hertz's law holds for small areas"
         ))
     }
 
-    /// That it is not elastic.
+    /// A warning if the contact is not elastic.
     fn yields(&self) -> Option<String> {
         let strength =
-            self.known?.strength.filter(|strength| self.contact_pressure > HERTZ_YIELD * strength)?;
+            self.validity?.strength.filter(|strength| self.contact_pressure > HERTZ_YIELD * strength)?;
         let times = rounded(self.contact_pressure / strength, 3);
-        let [own, strength] = [self.contact_pressure, strength].map(pressure);
+        let [contact_pressure, strength] = [self.contact_pressure, strength].map(pressure);
         Some(format!(
-            "the pressure of {own} is {times} times the yield strength of {strength}: at {HERTZ_YIELD} times that, yield begins below the \
+            "the pressure of {contact_pressure} is {times} times the yield strength of {strength}: at {HERTZ_YIELD} times that, yield begins below the \
              surface (Tresca and von Mises, nu = 0.3): Hertz's law holds for elastic contacts"
         ))
     }
 
-    /// That it is not quasi-static.
+    /// A warning if the contact is not quasi-static.
     fn fast(&self) -> Option<String> {
-        let wave = self.known?.wave.filter(|wave| self.shortest < WAVES * wave)?;
-        let [own, wave] = [self.shortest, wave].map(|time| format!("{} ms", rounded(1e3 * time, 3)));
+        let wave = self.validity?.wave.filter(|wave| self.shortest < WAVES * wave)?;
+        let [shortest, wave] = [self.shortest, wave].map(|time| format!("{} ms", rounded(1e3 * time, 3)));
         Some(format!(
-            "the shortest contact lasts {own}, less than {WAVES} times the {wave} of a wave through the damper and back: Hertz's law holds for quasi-static contacts"
+            "the shortest contact lasts {shortest}, less than {WAVES} times the {wave} of a wave through the damper and back: Hertz's law holds for quasi-static contacts"
         ))
     }
 
@@ -167,7 +169,7 @@ impl Wall {
             false => String::new(),
         };
         let impacts = format!("{} at up to {} m/s", counted(impacts, "impact"), rounded(impact_speed, 3));
-        if self.known.is_none() {
+        if self.validity.is_none() {
             return format!("{impacts} on a rigid wall");
         }
         let [deep, radius] = [indentation, contact_radius].map(millimetres);
@@ -187,7 +189,7 @@ fn pressure(value: f64) -> String {
     format!("{} {unit}", rounded(scale * value, 3))
 }
 
-/// The mean powers that the motion in a window loses, W.
+/// The mean dissipated powers in a window, W.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Powers {
     structure: f64,
@@ -196,18 +198,18 @@ pub struct Powers {
 }
 
 impl Powers {
-    /// From what is lost in so many seconds.
+    /// From the energies lost in `seconds`.
     pub fn new(losses: Losses, seconds: f64) -> Self {
         let Losses { structure, damper, impacts } = losses;
         Self { structure: structure / seconds, damper: damper / seconds, impacts: impacts / seconds }
     }
 
-    /// In the dashpot of the structure, in that of the damper, in impacts, W.
+    /// The powers of the structure's dashpot, the damper's dashpot and the impacts, W.
     pub fn parts(&self) -> [f64; 3] {
         [self.structure, self.damper, self.impacts]
     }
 
-    /// Where the energy goes; none if nothing is lost.
+    /// The energy balance in words; none if nothing is lost.
     pub fn words(&self) -> Option<String> {
         let [structure, damper, impacts] = self.parts();
         let total = structure + damper + impacts;

@@ -63,7 +63,7 @@ fn walls(contact: &Contact) -> String {
     }
 }
 
-/// What a contact loses.
+/// The loss of a contact in words.
 fn loss(loss: &Loss) -> String {
     if loss.is_none() {
         return "Hertz without loss".to_owned();
@@ -80,11 +80,11 @@ fn loss(loss: &Loss) -> String {
     }
 }
 
-/// From when on the default method takes longer steps.
+/// The condition under which the default method takes longer steps.
 pub(crate) const LEFT_OUT: &str =
     "the fast part of the motion, that of a strong dashpot, has decayed and is left out";
 
-/// What a run costs, where runs are made in exact steps.
+/// The number or length of the steps of a run by the default method; none for other methods and steady objectives.
 fn steps(study: &Study) -> Option<String> {
     let settings = study.solver.settings();
     if settings.method != Method::Hybrid || study.objective().is_steady() {
@@ -125,7 +125,7 @@ pub(crate) fn forced(forcing: &Forcing) -> String {
     }
 }
 
-/// What is given in time, in words.
+/// A forcing given in time, in words.
 fn given(History { of, course }: &History) -> String {
     let of_what = match of {
         Of::Force => "a force on the structure",

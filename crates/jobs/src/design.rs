@@ -1,5 +1,6 @@
-//! `design`: from a structure and what its damper may be to an answer. First the closed form: no damper, the formulas that fit the goal, the best
-//! TMD. Then an SSVI NES, from good designs that are known. All are compared by every quantity over the band, or under a shock or a record, and the better one is certified.
+//! `design`: from a structure and requirements on its damper to a recommendation. First in closed form: no damper, the formulas for the
+//! goal, the best TMD. Then an SSVI NES, searched from known good designs. All are compared in every quantity over the band, or under a
+//! shock or a record, and the better damper is certified.
 
 mod answer;
 mod candidate;
@@ -34,12 +35,12 @@ use crate::{Error, Observer, Request, pages, resolved};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
-/// The files of an answer; `band.svg` of a harmonic, `motion.svg` of a shock or a record.
+/// The files of a design; `band.svg` for a harmonic, `motion.svg` for a shock or a record.
 pub static KIND: Kind = Kind {
     command: "design",
     answer: "design.json",
     input: resolved::SEVERAL,
-    rows: &[("comparison.csv", table::again)],
+    rows: &[("comparison.csv", table::recompute)],
     whole: &[],
     derived: &[
         "design.json",
@@ -53,8 +54,8 @@ pub static KIND: Kind = Kind {
     ],
 };
 
-/// A directory for the results of a design: `results/<name>`, or, where other results or unfinished work stand there, the next of
-/// `results/<name>-2`, `-3` that is free, so that nothing is discarded. To be resumed, the last with unfinished work.
+/// The directory for the results of a design: `results/<name>`, or, if it holds other results or unfinished work, the first free one of
+/// `results/<name>-2`, `-3`, …, so that nothing is discarded. With `resume`, the last one with unfinished work.
 pub fn place(requirements: &Requirements, name: &str, resume: bool) -> PathBuf {
     let of = |number: u32| {
         let ending = if number == 1 { String::new() } else { format!("-{number}") };
@@ -75,8 +76,7 @@ pub fn place(requirements: &Requirements, name: &str, resume: bool) -> PathBuf {
 
 /// Designs dampers for a structure, and compares them.
 ///
-/// # Errors
-/// A number is beyond what a study may hold, nothing can be computed, or the results cannot be written.
+/// # Errors A number is out of range, nothing can be computed, or the results cannot be written.
 pub fn design(
     requirements: &Requirements,
     request: &Request,

@@ -1,7 +1,7 @@
 //! Tables of designs in the form of the paper's Table 2, as `table2`, `retention` and `design` make them.
 
-use crate::again::Source;
-use crate::needs::{Largest, TOLD};
+use crate::needs::{Largest, REPORTED};
+use crate::recompute::Source;
 use crate::resolved::Resolved;
 use crate::summary::TunedDamper;
 use crate::tune::{Optimum, objective, table2_header, table2_row};
@@ -15,10 +15,10 @@ use retune_study::{Study, rounded, short};
 use serde::Serialize;
 use std::path::Path;
 
-/// A table of designs: the paper's columns, one column of its own, and what each design is worth.
+/// A table of designs: the paper's columns, a label column, and the values of each design.
 #[derive(Debug, Serialize)]
 pub struct Designs {
-    /// The name of the column of its own.
+    /// The name of the label column.
     pub column: &'static str,
     /// The rows.
     pub rows: Vec<Row>,
@@ -30,11 +30,11 @@ pub struct Designs {
 /// A row of the table.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
-    /// The entry in the column of its own.
+    /// The entry in the label column.
     pub label: String,
     /// The damper in words.
     pub damper: String,
-    /// Its numbers.
+    /// Its parameters.
     #[serde(flatten)]
     pub found: TunedDamper,
     /// The E1max that the paper prints for it, J.
@@ -43,7 +43,7 @@ pub struct Row {
     /// E1max by the objective of its study, J.
     #[serde(rename = "E1max")]
     pub e1_max: f64,
-    /// The same without a damper, J; infinite for an undamped structure at resonance.
+    /// E1max without a damper, J; infinite for an undamped structure at resonance.
     #[serde(rename = "E1max_none")]
     pub none: f64,
     /// The verdict of its certificate.
@@ -79,7 +79,7 @@ impl Designs {
         Ok(results.write(&format!("{name}.txt"), &(self.text() + "\n"))?)
     }
 
-    /// The parameters that the table has columns for beside m2.
+    /// The parameters with columns in the table, besides m2.
     pub fn parameters(&self) -> Vec<Parameter> {
         columns::of_designs(self.rows.iter().map(|row| &row.found.design))
     }
@@ -87,14 +87,14 @@ impl Designs {
     /// The table as data.
     pub fn table(&self) -> Table {
         let parameters = self.parameters();
-        let (symbols, needs) = (columns::symbols(&parameters), TOLD.map(Measure::name));
+        let (symbols, needs) = (columns::symbols(&parameters), REPORTED.map(Measure::name));
         let energies = ["E1max", "E1max_printed", "E1max_none"];
         let mut table = columns::table(
             &[&[self.column, "damper", "m2"], &*symbols, &energies, &needs, &["verdict"]].concat(),
         );
         for Row { label, damper, found, printed, e1_max, none, verdict, needs, .. } in &self.rows {
             let first = cells![label.as_str(), damper.as_str(), found.mass.get()];
-            let needs = TOLD.map(|measure| needs.map(|needs| needs.value(measure)).into());
+            let needs = REPORTED.map(|measure| needs.map(|needs| needs.value(measure)).into());
             let energies = cells![*e1_max, *printed, *none];
             let design = columns::cells_of(&found.design, &parameters);
             table.push([first, design, energies, needs.to_vec(), cells![*verdict]].concat());
@@ -123,7 +123,7 @@ impl Designs {
         }
         lines.push(String::new());
         for Row { label, damper, found, needs, reason, .. } in &self.rows {
-            // What the table above has no column for.
+            // The parameters without a column in the table above.
             let others = self.parameters().into_iter().filter(|other| !Parameter::PAPER.contains(other));
             let others: String = others
                 .map(|other| (other, found.design.get(other)))
@@ -145,14 +145,14 @@ impl Designs {
     }
 }
 
-/// A text in a column, with a space behind it at least.
+/// A text in a column, followed by at least one space.
 fn apart(text: &str, width: usize) -> String {
     format!("{:<width$}", format!("{text} "))
 }
 
-/// What a row says of its design, computed again by the objective of the study of its damper: E1max, and beside it stroke and contact force, on the
-/// samples that the plan names, or else E1max on those of the study; and the largest values from rest on, where the row has them.
-pub(crate) fn again(place: &Path, _name: &str) -> Result<Source, Error> {
+/// Recomputes the values of a row by the objective of its damper's study: E1max, stroke and contact force on the samples of the plan;
+/// without these, E1max on those of the study; and the largest values from rest on, where the row has them.
+pub(crate) fn recompute(place: &Path, _name: &str) -> Result<Source, Error> {
     let resolved = Resolved::read(place)?;
     let samples = resolved.plan["samples"].as_u64().map(|samples| samples as usize);
     let studies = resolved.studies()?;
@@ -164,7 +164,8 @@ pub(crate) fn again(place: &Path, _name: &str) -> Result<Source, Error> {
         let mut say = |name: &str, value: f64| numbers.push((name.to_owned(), value));
         match samples {
             Some(samples) => {
-                let found = objective::finer(study, samples, &at).and_then(|study| objective::worst(&study));
+                let found =
+                    objective::with_samples(study, samples, &at).and_then(|study| objective::worst(&study));
                 say("E1max", found.as_ref().map_or(f64::INFINITY, |found| found.value));
                 for measure in [Measure::Stroke, Measure::ContactForce] {
                     let limit = Limit::Of(measure);
@@ -173,19 +174,19 @@ pub(crate) fn again(place: &Path, _name: &str) -> Result<Source, Error> {
             }
             None => say("E1max", study.energy(&scene).unwrap_or(f64::INFINITY)),
         }
-        let told = TOLD.into_iter().filter(|measure| {
+        let wanted = REPORTED.into_iter().filter(|measure| {
             let has = samples.is_none() || !matches!(measure, Measure::Stroke | Measure::ContactForce);
             has && !row.number(measure.name()).is_nan()
         });
-        let told: Vec<Measure> = told.collect();
-        if !told.is_empty() {
+        let wanted: Vec<Measure> = wanted.collect();
+        if !wanted.is_empty() {
             let needs = Largest::of(study, &scene);
-            told.into_iter().for_each(|measure| {
+            wanted.into_iter().for_each(|measure| {
                 say(measure.name(), needs.map_or(f64::NAN, |needs| needs.value(measure)));
             });
         }
         Some(numbers)
     });
-    // A row whose fields are empty says that no design keeps its bound.
+    // A row with empty fields stands for a bound that no design keeps.
     Ok(source.only(|row| ["k2", "c2", "D", "C", "E1max"].iter().any(|name| !row.text(name).is_empty())))
 }

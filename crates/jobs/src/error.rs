@@ -65,7 +65,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// That a study breaks a rule.
+    /// The error of a study that breaks a rule.
     pub fn rule(study: &Study) -> impl Fn(Rule) -> Self + Copy + '_ {
         |rule| Self::Rule { name: study.name().to_owned(), rule }
     }

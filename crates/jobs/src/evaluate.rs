@@ -35,8 +35,9 @@ under violation <= 0. One that takes none, and has to find its way to designs th
 is 0 and 1e6 * (1 + violation) elsewhere, with a number above every E1max in the place of 1e6. One that stops at inf (a fit, a \
 gradient) needs the same.";
 
-/// Number of lines without a value that are reported on standard error: if nobody reads it, a full pipe must not block the answers.
-const TOLD: u64 = 100;
+/// Number of lines without a value that are reported on standard error. It is limited so that a full pipe that nobody reads cannot block
+/// the answers.
+const REPORTED: u64 = 100;
 
 /// Why a line has no value.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -76,8 +77,7 @@ pub struct Streams<'a, I> {
 /// Reads designs, one per line, and answers each; see [`PROTOCOL`]. Ends with its input, or when the answers are no longer read. At
 /// most `threads` lines (by default as many as there are cores) are evaluated in parallel.
 ///
-/// # Errors
-/// The study does not say what to tune, the input cannot be read, the answers cannot be written, or a line had no value.
+/// # Errors The study tunes nothing, the input cannot be read, the answers cannot be written, or a line had no value.
 pub fn evaluate<I: BufRead + Send + 'static>(
     study: &Study,
     json: bool,
@@ -94,13 +94,13 @@ fn answer<I: BufRead + Send + 'static>(
     json: bool,
     Streams { input, answers, complaints }: Streams<'_, I>,
 ) -> Result<(), Error> {
-    let together = rayon::current_num_threads();
-    let lines = lines(input, together);
+    let batch_size = rayon::current_num_threads();
+    let lines = lines(input, batch_size);
     let (mut count, mut failed) = (0, 0);
     while let Ok(first) = lines.recv() {
         let refuse = |source| retune_store::Error::Input { path: "standard input".into(), source };
         let mut batch = vec![first.map_err(refuse)?];
-        while batch.len() < together
+        while batch.len() < batch_size
             && let Ok(Ok(line)) = lines.try_recv()
         {
             batch.push(line);
@@ -129,11 +129,11 @@ fn answer<I: BufRead + Send + 'static>(
     if failed == 0 { Ok(()) } else { Err(Error::Lines { failed, lines: count }) }
 }
 
-/// Reports a line without a value, for the first [`TOLD`] of them.
+/// Reports a line without a value, for the first [`REPORTED`] of them.
 fn complain(line: u64, failed: u64, reason: &LineError, complaints: &mut dyn FnMut(&str)) {
-    if failed <= TOLD {
+    if failed <= REPORTED {
         complaints(&format!("error: line {line}: {reason}"));
-    } else if failed == TOLD + 1 {
+    } else if failed == REPORTED + 1 {
         complaints("further lines without a value are answered on standard output only");
     }
 }
@@ -162,7 +162,7 @@ fn object(objective: &DesignObjective, found: &Result<Evaluation, LineError>) ->
         (objective.goal().objective.quantity().name(), number(found.value)),
         ("violation", number(found.violation + 0.0)),
     ];
-    // What is reached may have the name of the value, and be that of another part of the run.
+    // `reached` is a nested object since a limit may have the name of the value but cover another part of the run.
     if !limits.is_empty() {
         let reached = limits.set().map(|limit| (limit.name(), number(found.reached.get(limit))));
         all.push(("reached", fields(reached.collect())));
@@ -193,7 +193,7 @@ const MOST_BYTES: usize = 4096;
 enum Line {
     /// Its text; invalid UTF-8 is replaced.
     Text(String),
-    /// One that is longer than [`MOST_BYTES`]; its text is not kept.
+    /// A line longer than [`MOST_BYTES`]; its text is not kept.
     Long,
 }
 
@@ -208,7 +208,7 @@ fn lines(mut input: impl BufRead + Send + 'static, ahead: usize) -> Receiver<std
             }
         }
     };
-    // The thread is not joined: when the answers are no longer read, it may still wait for a line.
+    // The thread is not joined: when answers are no longer read, it may still be waiting for a line.
     let started = std::thread::Builder::new().name("input".to_owned()).spawn(read);
     if let Err(error) = started {
         let (sender, receiver) = sync_channel(1);

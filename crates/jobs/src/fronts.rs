@@ -1,4 +1,5 @@
-//! `fronts`: the least E1max of a damper under ever looser bounds on the spring and on the stroke, and the trade between them.
+//! `fronts`: the least E1max of dampers under ever looser bounds on the spring, the stroke and the contact force, and the trade-off between
+//! them.
 
 mod candidate;
 mod descents;
@@ -24,16 +25,16 @@ pub static KIND: Kind = Kind {
     answer: "front.csv",
     input: resolved::SEVERAL,
     rows: &[
-        ("k2.csv", crate::designs::again),
-        ("stroke.csv", crate::designs::again),
-        ("contact_force.csv", crate::designs::again),
-        ("front.csv", crate::designs::again),
+        ("k2.csv", crate::designs::recompute),
+        ("stroke.csv", crate::designs::recompute),
+        ("contact_force.csv", crate::designs::recompute),
+        ("front.csv", crate::designs::recompute),
     ],
-    whole: &[("certificate-*.json", designs::again)],
+    whole: &[("certificate-*.json", designs::recompute)],
     derived: &["k2.svg", "stroke.svg", "contact_force.svg", "front.svg", "README.md", "report.html"],
 };
 
-/// Tunes each damper under each bound, and shows what it is good for.
+/// Tunes each damper under each bound and compares them.
 ///
 /// # Errors
 /// A study is wrong, nothing can be computed, or the results cannot be written.

@@ -1,5 +1,4 @@
-//! A job from its request to its results: the directory is opened, the work done, the input and the manifest written, everything
-//! published and reported. Every kind of job does these steps here.
+//! The steps common to all jobs: open the directory, do the work, write the input and the manifest, publish and report.
 
 use crate::artefact::Kind;
 use crate::resolved::Resolved;
@@ -18,7 +17,7 @@ pub struct Job {
     /// The file without which its results are not complete.
     pub answer: String,
     pub solvers: Vec<Solver>,
-    /// The beginning of the names of its files, if it makes a part of the results and leaves the others as they are.
+    /// Prefix of the names of its files, if it makes only part of the results and keeps the others.
     pub only: Option<String>,
 }
 
@@ -33,9 +32,9 @@ pub struct Made<T> {
 /// The end of a job.
 #[derive(Debug)]
 pub enum Done<T> {
-    /// It was done: its result.
+    /// The result of the job.
     Made(T),
-    /// It was to be resumed, but was finished already.
+    /// The job to resume was finished already.
     FinishedBefore,
 }
 
@@ -47,7 +46,7 @@ impl Job {
         Ok(Self { kind, out, order, input, answer, solvers: vec![study.solver], only: None })
     }
 
-    /// The job of a kind on several studies: each with the name of its damper, under a plan.
+    /// The job of a kind on several studies, each with the name of its damper, and a plan.
     pub fn of_studies<'a>(
         kind: &'static Kind,
         request: &Request,
@@ -87,7 +86,7 @@ impl Job {
         Ok((made, results))
     }
 
-    /// Does the whole job on the threads of its request and reports its end to the observer; `work` may not report it.
+    /// Runs the whole job on the threads of its request and reports its end to the observer; `work` must not report it.
     pub fn run<T: Send>(
         &self,
         request: &Request,
@@ -142,7 +141,7 @@ pub fn open(
 pub struct Request {
     /// The study file.
     pub study: PathBuf,
-    /// Directory of the results; by default that of the job.
+    /// Directory of the results; by default that of the kind of job.
     pub out: Option<PathBuf>,
     /// Number of threads; by default all cores. The results are the same for any number.
     pub threads: Option<u16>,
@@ -174,8 +173,8 @@ impl Request {
         self.out.clone().unwrap_or_else(|| Path::new("results").join(name_from(&stem.to_string_lossy())))
     }
 
-    /// The same with the directory of results along a parameter: by default `results/<kind>-<study>-<rest>`, of a design that a search found
-    /// `results/<kind>-<study>-tuned-<rest>`.
+    /// The request with its directory for results along a parameter: by default `results/<kind>-<study>-<rest>`, for a design that a search
+    /// found `results/<kind>-<study>-tuned-<rest>`.
     pub fn placed(&self, kind: &str, study: &Study, rest: &str) -> Result<Self, Error> {
         let tuned = if found_in(&self.study)?.is_some() { "-tuned" } else { "" };
         let out = || Path::new("results").join(format!("{kind}-{}{tuned}-{rest}", study.name()));

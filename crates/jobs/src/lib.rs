@@ -4,8 +4,8 @@
 //! results (`retune_store`), reports its progress to an [`Observer`], and returns its result. Nothing here prints.
 //!
 //! [`mod@tune`] searches the best design of a study; [`certify`] gives the error bar, the sensitivity and the motion of a design;
-//! [`table2`] makes several searches and compares them, as the jobs of this crate do; [`verify`] checks results by computing them
-//! again; [`prove`] proves one periodic motion; [`simulate`] makes one run, [`sweep`] one at each value of a parameter; [`evaluate`] evaluates designs of other programs.
+//! [`table2`] makes several searches and compares them; [`verify`] checks results by recomputing them; [`prove`] proves one periodic
+//! motion; [`simulate`] makes one run, [`sweep`] one at each value of a parameter; [`evaluate`] evaluates designs of other programs.
 //!
 //! ```
 //! use retune_jobs::simulate::simulate;
@@ -40,7 +40,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod again;
 pub mod amount;
 pub mod answer;
 pub mod artefact;
@@ -63,6 +62,7 @@ mod pages;
 pub mod paper;
 pub mod parts;
 pub mod prove;
+mod recompute;
 pub mod resolved;
 pub mod retention;
 pub mod rows;

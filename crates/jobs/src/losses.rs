@@ -1,6 +1,6 @@
-//! `losses`: what a damper is worth when its contacts lose energy. One is tuned as if they lost nothing, one anew for each restitution, one for
-//! the worst of all at once, and one is kept: the paper's for the paper's structure, that of the study for any other. Each is evaluated at every
-//! restitution, and where the energy goes is told.
+//! `losses`: the performance of dampers whose contacts lose energy. One is tuned for lossless contacts, one for each restitution, one for
+//! the worst of all restitutions, and one is kept as it is: the paper's for the paper's structure, else the study's. Each is evaluated at
+//! every restitution, with its energy balance.
 
 mod page;
 mod points;
@@ -25,7 +25,7 @@ pub static KIND: Kind = Kind {
     command: "losses",
     answer: FILE,
     input: resolved::SEVERAL,
-    rows: &[(FILE, points::again)],
+    rows: &[(FILE, points::recompute)],
     whole: &[],
     derived: &["losses.svg", "dashpot.svg", "powers.svg", "README.md", "report.html"],
 };
@@ -53,7 +53,7 @@ pub fn losses(request: &Request, watch: &dyn Observer) -> Result<Done<Losses>, E
         let lossless = designs[0].2; // the first restitution is 1
         watch.log("\nall restitutions at once")?;
         let hedged = searches.tune(&study, "all")?.damper.design;
-        for (tuning, design) in [kept(&study)?, (Tuning::Lossless, lossless), (Tuning::Hedged, hedged)] {
+        for (tuning, design) in [untuned(&study)?, (Tuning::Lossless, lossless), (Tuning::Hedged, hedged)] {
             designs.extend(restitutions.iter().map(|e| (tuning, *e, design)));
         }
         let points = of_each(&designs, &Silent, |(tuning, e, design)| {
@@ -76,8 +76,8 @@ fn restitutions(study: &Study) -> Result<Vec<f64>, Error> {
     Ok(all)
 }
 
-/// The damper that is not tuned: the paper's means nothing for another structure.
-fn kept(study: &Study) -> Result<(Tuning, Design), Error> {
+/// The damper that is not tuned: the paper's on the paper's structure, else the study's.
+fn untuned(study: &Study) -> Result<(Tuning, Design), Error> {
     let damper = study.scene.damper.ok_or_else(|| Error::rule(study)(Rule::NoDamper))?;
     if is_papers_structure(&study.scene) {
         Ok((Tuning::Paper, papers()?))

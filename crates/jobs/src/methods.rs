@@ -1,9 +1,9 @@
-//! The runs of methods on scenes, which the comparison of methods leaves (`crates/lab`), computed again: of each row what does not depend on
-//! the machine's speed. The plan beside them holds the tolerance of the reference, the bound on steps, and the settings behind names.
+//! Recomputes the tables of the comparison of methods (`crates/lab`), except what depends on the machine's speed. The plan beside them
+//! holds the tolerance of the reference, the limit on steps, and the settings behind names.
 
 use crate::Error;
-use crate::again::{Row, Source};
 use crate::artefact::Kind;
+use crate::recompute::{Row, Source};
 use crate::resolved::{Resolved, SEVERAL};
 use retune_model::Scene;
 use retune_solver::{Contacts, Method, Response, Settings, Window, simulate, touch_downs};
@@ -16,7 +16,7 @@ pub static ACCURACY: Kind = Kind {
     command: "accuracy",
     answer: "runs.csv",
     input: SEVERAL,
-    rows: &[("runs.csv", again)],
+    rows: &[("runs.csv", recompute)],
     whole: &[],
     derived: &["models.csv", "machine.json", "*.svg", "README.md"],
 };
@@ -26,7 +26,7 @@ pub static STABILITY: Kind = Kind {
     command: "stability",
     answer: "atlas.csv",
     input: SEVERAL,
-    rows: &[("atlas.csv", again)],
+    rows: &[("atlas.csv", recompute)],
     whole: &[],
     derived: &["*.csv", "*.svg", "README.md"],
 };
@@ -49,12 +49,12 @@ pub fn errors([e1_max, e1_reference]: [f64; 2], states: [[f64; 4]; 2], omega: f6
     [(e1_max / e1_reference - 1.0).abs(), state]
 }
 
-/// Evaluations of a run; of the hybrid, each step counts as one.
+/// Evaluations of a run; each step of the hybrid method counts as one.
 pub fn evaluations(method: Method, response: &Response) -> u64 {
     response.work.evaluations + if method == Method::Hybrid { response.work.steps } else { 0 }
 }
 
-/// The plan of a comparison: `ways` are names of columns of the table with method, contacts and setting.
+/// The plan of a comparison: `ways` gives method, contacts and setting behind the names in the column `method`.
 pub fn plan<'a>(
     reference_rtol: f64,
     max_steps: u64,
@@ -68,8 +68,8 @@ pub fn plan<'a>(
     json!({ "reference_rtol": reference_rtol, "max_steps": max_steps, "ways": ways })
 }
 
-/// A row of Retune's own runs on one of the scenes, computed again.
-fn again(place: &Path, _name: &str) -> Result<Source, Error> {
+/// Recomputes the rows of Retune's runs on one of the scenes.
+fn recompute(place: &Path, _name: &str) -> Result<Source, Error> {
     let resolved = Resolved::read(place)?;
     let (plan, studies) = (resolved.plan.clone(), resolved.studies()?);
     let names: Vec<String> = studies.iter().map(|(name, _)| name.clone()).collect();
@@ -87,7 +87,7 @@ fn scene_of(row: Row<'_>) -> &str {
     row.text(if is_of_atlas(row) { "difficulty" } else { "scene" })
 }
 
-/// The columns that are computed again.
+/// The columns that are recomputed.
 fn columns(row: Row) -> &'static [&'static str] {
     const ATLAS: [&str; 4] = ["impacts", "expected_impacts", "evaluations", "error"];
     const RUNS: [&str; 6] =
@@ -95,12 +95,12 @@ fn columns(row: Row) -> &'static [&'static str] {
     if is_of_atlas(row) { &ATLAS } else { &RUNS }
 }
 
-/// Whether a row is one of the atlas of failures, which names its scene by its difficulty.
+/// Whether a row belongs to the atlas of failures, which names a scene by its difficulty.
 fn is_of_atlas(row: Row) -> bool {
     row.text("scene").is_empty()
 }
 
-/// The numbers of these columns; none where the row is of no method, infinite where the run fails.
+/// The numbers of these columns; none where the method is unknown, infinite where the run fails.
 fn numbers(plan: &Value, row: Row, study: &Study) -> Option<Vec<f64>> {
     let way = &plan["ways"][row.text("method")];
     let text = |name: &str| way[name].as_str().unwrap_or_else(|| row.text(name)).to_owned();
@@ -125,15 +125,15 @@ fn numbers(plan: &Value, row: Row, study: &Study) -> Option<Vec<f64>> {
     let [e1, state] = errors(energies, states, scene.forcing.frequency.get());
     let counts = vec![impacts as f64, expected.1 as f64, evaluations(method, &found) as f64];
     // Errors are printed to three digits in the atlas, to four among the runs.
-    let own = if is_of_atlas(row) {
+    let values = if is_of_atlas(row) {
         vec![printed(e1.max(state), 2)]
     } else {
         vec![found.e1_max.value, printed(e1, 3), printed(state, 3)]
     };
-    Some([counts, own].concat())
+    Some([counts, values].concat())
 }
 
-/// A number as it stands in a table, with so many digits behind the point.
+/// A number as printed in a table, with this many decimals.
 fn printed(value: f64, digits: usize) -> f64 {
     format!("{value:.digits$e}").parse().unwrap_or(f64::NAN)
 }

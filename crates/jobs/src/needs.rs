@@ -1,5 +1,5 @@
-//! What a damper needs and what the structure does with it, beside the structure without a damper and with the best linear one: the largest
-//! values over all that an answer covers. Whoever tells of a design tells this.
+//! The needs of a damper and the motion of the structure, compared with no damper and with the best linear one: the largest values over
+//! everything that the objective covers. Every report on a design has them.
 
 use crate::amount::Amount;
 use crate::contacts::Contacts;
@@ -9,13 +9,14 @@ use retune_study::{Search, Study, rounded, short};
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 
-/// The part of the value by which what the objective looks at must be below the whole run for both to be told.
-const APART: f64 = 0.01;
-/// The share by which another damper must be better, or the structure move more than without a damper, to be named.
+/// Relative difference above which the value in the objective is reported besides that of the whole run, and above which a larger value
+/// than without a damper is a warning.
+const NOTABLE: f64 = 0.01;
+/// Relative improvement above which a linear damper counts as better.
 const BETTER: f64 = 1e-3;
 
-/// What is told of a damper: the room and the strength that it needs, and what the structure does.
-pub const TOLD: [Measure; 5] = [
+/// The quantities reported for a damper: the room and strength that it needs, and the motion of the structure.
+pub const REPORTED: [Measure; 5] = [
     Measure::Stroke,
     Measure::ContactForce,
     Measure::Displacement,
@@ -23,17 +24,17 @@ pub const TOLD: [Measure; 5] = [
     Measure::GroundForce,
 ];
 
-/// What a design needs, and what others need.
+/// The needs of a design, and of the alternatives.
 #[derive(Clone, Debug, Serialize)]
 pub struct Needs {
     pub damper: Largest,
-    /// What its contacts are like in the run with the largest contact force, whole, from rest on; none if it touches no wall.
+    /// Its contacts in the whole run, from rest on, with the largest contact force; none if it touches no wall.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contacts: Option<Contacts>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub none: Option<Largest>,
-    /// The best damper of the same mass without walls, for the same objective, whatever the limits and bounds of the study; none under what is
-    /// given in time, and beside a damper without walls none that is not better.
+    /// The best damper of the same mass without walls, for the same objective, regardless of the study's limits and bounds. None under a
+    /// forcing given in time; for a damper without walls, only if it is better.
     #[serde(rename = "TMD", skip_serializing_if = "Option::is_none")]
     pub linear: Option<Linear>,
 }
@@ -50,7 +51,7 @@ pub struct Linear {
     pub c2: f64,
     #[serde(flatten)]
     value: Amount,
-    /// Why the search could not come to it, where it is better than what it came to.
+    /// Why the search could not find it, if it is better than the design found.
     #[serde(skip_serializing_if = "Option::is_none")]
     better_but: Option<String>,
     pub needs: Largest,
@@ -60,8 +61,8 @@ pub struct Linear {
 }
 
 impl Serialize for Largest {
-    /// By the name of each measure: the largest value from rest on with its place; and that of the window, or of the settled motion, where
-    /// this differs by more than 1 %.
+    /// For each measure by name: the largest value from rest on with its place; and that in the objective where it is lower by more than 1
+    /// %.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
         struct Place {
@@ -81,7 +82,7 @@ impl Serialize for Largest {
 }
 
 impl Largest {
-    /// Of a scene by the objective of a study, whatever its limits; none where it cannot be run.
+    /// The largest values of a scene by the objective of a study, regardless of limits; none where it cannot be run.
     pub fn of(study: &Study, scene: &Scene) -> Option<Self> {
         study.goal().needs(scene, &study.solver.settings(), &|| true).ok().map(Self)
     }
@@ -91,18 +92,18 @@ impl Largest {
         self.0.whole.get(measure).value
     }
 
-    /// That of the part of the response that the objective looks at, where it differs by more than 1 %.
+    /// The largest value in the part of the response that the objective covers, where it is lower by more than 1 %.
     pub fn own(&self, measure: Measure) -> Option<f64> {
         let own = self.0.own.get(measure).value;
-        (own.is_finite() && own < (1.0 - APART) * self.value(measure)).then_some(own)
+        (own.is_finite() && own < (1.0 - NOTABLE) * self.value(measure)).then_some(own)
     }
 
-    /// That value with its unit; lengths of the structure in mm.
+    /// The largest value from rest on with its unit; the displacement in mm.
     pub fn sized(&self, measure: Measure) -> String {
         sized(measure, self.value(measure))
     }
 
-    /// Where it is, rad/s.
+    /// The frequency of the largest value, rad/s.
     pub fn omega(&self, measure: Measure) -> f64 {
         self.0.whole.get(measure).omega
     }
@@ -113,9 +114,9 @@ impl Largest {
         format!("{}{}", sized(measure, value), at(omega))
     }
 
-    /// The values that are [`TOLD`], in a list.
+    /// The [`REPORTED`] values in a list.
     pub fn list(&self) -> String {
-        TOLD.map(|measure| format!("{} {}", measure.short_name(), self.sized(measure))).join(", ")
+        REPORTED.map(|measure| format!("{} {}", measure.short_name(), self.sized(measure))).join(", ")
     }
 
     /// The room and the strength that the damper needs.
@@ -137,9 +138,9 @@ impl Largest {
         format!("moves by {x1}, accelerates by {a1} and loads the ground with {force}")
     }
 
-    /// What the objective looks at, where it is less.
-    fn own_words(&self, study: &Study) -> Option<String> {
-        let less = TOLD.into_iter().filter_map(|measure| {
+    /// The values in the objective, where they are lower, in words.
+    fn objective_words(&self, study: &Study) -> Option<String> {
+        let less = REPORTED.into_iter().filter_map(|measure| {
             Some(format!("{} {}", measure.short_name(), sized(measure, self.own(measure)?)))
         });
         let less: Vec<String> = less.collect();
@@ -153,7 +154,7 @@ impl Largest {
     }
 }
 
-/// A value with its unit; lengths of the structure in mm.
+/// A value with its unit; the displacement in mm, the pressure in MPa.
 pub(crate) fn sized(measure: Measure, value: f64) -> String {
     match measure {
         _ if !value.is_finite() => "without bound".to_owned(),
@@ -164,7 +165,7 @@ pub(crate) fn sized(measure: Measure, value: f64) -> String {
 }
 
 impl Needs {
-    /// Of a design that a search found, with its value; none where the design cannot be run.
+    /// The needs of a design that a search found, with its value; none where it cannot be run.
     pub fn new(study: &Study, search: &Search, design: &Scene, value: f64) -> Option<Self> {
         let goal = Goal { limits: Limits::default(), ..study.goal() };
         let settings = study.solver.settings();
@@ -176,7 +177,7 @@ impl Needs {
                     let found = goal.evaluate(&scene, &settings, f64::INFINITY).ok()?;
                     let damper = scene.damper?;
                     let better = found.value < (1.0 - BETTER) * value;
-                    // A damper without walls is the best TMD itself where none is better.
+                    // A damper without walls is itself the best TMD if none is better.
                     let own = design.damper.is_some_and(|own| own.contact.is_none());
                     if own && !better {
                         return None;
@@ -199,7 +200,7 @@ impl Needs {
         Some(Self { damper, contacts, none, linear })
     }
 
-    /// What a reader must know first: a better damper that the study excludes, and what the damper makes worse.
+    /// Warnings: a better damper that the study excludes, and quantities that the damper makes worse.
     pub fn warnings(&self) -> Vec<String> {
         let mut lines: Vec<String> = self.contacts.iter().flat_map(Contacts::warnings).collect();
         if let Some(Linear { k2, c2, value, better_but: Some(why), needs, of_sum }) = &self.linear {
@@ -218,7 +219,7 @@ impl Needs {
             [Measure::Displacement, Measure::Velocity, Measure::Acceleration, Measure::GroundForce];
         for measure in measures {
             let (own, without) = (self.damper.value(measure), none.value(measure));
-            if own > (1.0 + APART) * without {
+            if own > (1.0 + NOTABLE) * without {
                 let linear = self.linear.as_ref().map_or(String::new(), |linear| {
                     format!(", {} with the best TMD", linear.needs.sized(measure))
                 });
@@ -230,9 +231,9 @@ impl Needs {
         lines
     }
 
-    /// The lines of an answer: what they are of, and their words.
+    /// The lines of an answer: their labels and words.
     pub fn lines(&self, study: &Study) -> Vec<(&'static str, String)> {
-        // A stationary random motion has no largest value: what is told is of one draw.
+        // A stationary random motion has no largest value: the reported ones are of one draw.
         let draw = if study.objective().is_stationary() { ", in the draw of the study" } else { "" };
         let mut lines = vec![
             ("needs", format!("{}{draw}", self.damper.damper_words())),
@@ -242,10 +243,10 @@ impl Needs {
         let place = if place > 0.0 { format!(",{}", at(place)) } else { String::new() };
         let contacts = self.contacts.iter().flat_map(Contacts::words);
         lines.extend(contacts.map(|words| ("contact", format!("{words}{place}"))));
-        lines.extend(self.damper.own_words(study).map(|words| ("later", words)));
-        let none = self.none.iter().map(|none| format!("no damper: {}", beside(none, false)));
+        lines.extend(self.damper.objective_words(study).map(|words| ("later", words)));
+        let none = self.none.iter().map(|none| format!("no damper: {}", alternative(none, false)));
         let linear = self.linear.iter().map(|Linear { k2, c2, needs, .. }| {
-            format!("best TMD (k2 {}, c2 {}): {}", rounded(*k2, 4), rounded(*c2, 4), beside(needs, true))
+            format!("best TMD (k2 {}, c2 {}): {}", rounded(*k2, 4), rounded(*c2, 4), alternative(needs, true))
         });
         let others: Vec<String> = none.chain(linear).collect();
         if !others.is_empty() {
@@ -255,23 +256,23 @@ impl Needs {
     }
 }
 
-/// The values of another damper in a few words.
-fn beside(largest: &Largest, damped: bool) -> String {
+/// The values of an alternative, briefly.
+fn alternative(largest: &Largest, damped: bool) -> String {
     let of =
         |measure: Measure| format!("{} {}", measure.short_name(), sized(measure, largest.value(measure)));
     let structure = [Measure::Displacement, Measure::Acceleration, Measure::GroundForce].map(of).join(", ");
     if damped { format!("{structure}, {}", of(Measure::Stroke)) } else { structure }
 }
 
-/// Why a search did not come to a better damper without walls.
+/// Why a search did not find a better damper without walls.
 fn excluded(study: &Study, search: &Search, design: &Scene, linear: &Scene, needs: &Largest) -> String {
     let mut why = Vec::new();
-    let (Some(own), Some(other)) = (design.damper, linear.damper) else { return String::new() };
+    let (Some(found), Some(other)) = (design.damper, linear.damper) else { return String::new() };
     for variable in [Parameter::K2, Parameter::C2] {
         let value = variable.get(&other);
         let place = search.variables.iter().position(|known| *known == variable);
         match place.and_then(|place| search.options.bounds.get(place)) {
-            None if variable.get(&own) != value => why.push(format!("does not vary {variable}")),
+            None if variable.get(&found) != value => why.push(format!("does not vary {variable}")),
             Some(bounds) => {
                 let unit = variable.unit();
                 if let Some(upper) = bounds.upper.filter(|upper| value > *upper) {
@@ -300,7 +301,7 @@ fn excluded(study: &Study, search: &Search, design: &Scene, linear: &Scene, need
     }
     "the bounds of the study on k2 and c2 allow it".to_owned()
 }
-/// Where a value is, after it; nothing of a motion that has no frequency.
+/// The frequency of a value, to follow it; empty for a motion without one.
 fn at(omega: f64) -> String {
     if omega > 0.0 { format!(" at {} rad/s", rounded(omega, 4)) } else { String::new() }
 }

@@ -4,14 +4,14 @@ use crate::Error;
 use serde_json::Value;
 use std::path::Path;
 
-/// Receives the output and the progress of a job: what it does not take is ignored. A command line prints them, a page may draw them, [`Silent`]
-/// ignores all.
+/// Receives the output and the progress of a job; methods that it does not implement ignore theirs. A command line prints them, a page may
+/// draw them, [`Silent`] ignores all.
 pub trait Observer: Sync {
     /// Receives a line of the result, as soon as it is known.
     fn result(&self, _line: &str) -> Result<(), Error> {
         Ok(())
     }
-    /// Receives the best of a stage, for who stops there.
+    /// Receives the best result of a stage, in case the user stops there.
     fn so_far(&self, _line: &str) -> Result<(), Error> {
         Ok(())
     }
@@ -27,13 +27,13 @@ pub trait Observer: Sync {
     fn progress(&self, _stage: &'static str, _count: u64) -> Box<dyn Progress> {
         Box::new(Silent)
     }
-    /// From now on the job can be resumed if the process ends.
+    /// From here on the job can be resumed if the process ends.
     fn resumable(&self) {}
-    /// The job is done, and its answer stands in a file, see [`crate::answer`].
+    /// The job is done and its answer is in a file, see [`crate::answer`].
     fn answered(&self, _file: &Path) -> Result<(), Error> {
         Ok(())
     }
-    /// The job is done, and its answer as JSON stands in no file.
+    /// The job is done; its answer as JSON is in no file.
     fn answered_with(&self, _json: &Value) -> Result<(), Error> {
         Ok(())
     }
@@ -49,7 +49,7 @@ pub trait Progress: Sync {
     fn inc(&self, _more: u64) {}
     /// The best so far, in words.
     fn best(&self, _words: &str) {}
-    /// Does what writes a line while the stage goes on, so that both can be read.
+    /// Runs `write`, which prints a line while the stage is running, so that both stay readable.
     fn aside(&self, write: &mut dyn FnMut()) {
         write();
     }
@@ -65,7 +65,7 @@ impl Observer for Silent {}
 
 impl Progress for Silent {}
 
-/// Passes on warnings alone: for a search whose answer is told as a part of a larger one.
+/// Passes on warnings only: for a search whose answer is reported as part of a larger one.
 #[derive(Clone, Copy)]
 pub struct Quiet<'a>(pub &'a dyn Observer);
 

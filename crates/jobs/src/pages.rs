@@ -19,7 +19,7 @@ pub fn figure(mut sheet: Sheet, study: Option<&Study>) -> Drawing {
     drawing(&sheet)
 }
 
-/// The line below a figure: what the designs of a study are tuned for, and what made them.
+/// The line below a figure: what the designs of a study are tuned for, and the version of Retune.
 pub fn made_by(study: Option<&Study>) -> String {
     let over = study.map(|study| format!("{}; ", over(study)));
     format!("{}Retune {}", over.unwrap_or_default(), env!("CARGO_PKG_VERSION"))
@@ -30,7 +30,7 @@ pub fn over(study: &Study) -> String {
     retune_study::over(&study.objective(), study.scene.forcing.frequency.get())
 }
 
-/// An abscissa of a parameter, the angular frequency as ω; with a second scale in Hz where it is wanted.
+/// An abscissa of a parameter, the angular frequency as ω; with a second scale in Hz if `in_hertz`.
 pub fn abscissa(parameter: Parameter, scale: Scale, range: (f64, f64), in_hertz: bool) -> Axis {
     let symbol = if parameter.is_frequency() { "ω" } else { parameter.symbol() };
     let axis = Axis::new(format!("{symbol}, {}", parameter.unit()), scale, range);

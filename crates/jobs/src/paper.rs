@@ -1,4 +1,4 @@
-//! Every table and figure of the paper, reproduced beside its statements, with a verdict on each.
+//! Reproduces every table and figure of the paper, with a verdict on each of its statements.
 
 mod cases;
 mod curves;
@@ -20,10 +20,10 @@ mod variants;
 pub use plan::PaperPlan;
 pub(crate) use table1::TABLE_2;
 
-use crate::again::{Made as Again, broken, design, json, text};
 use crate::artefact::Kind;
 use crate::job::{Job, Made};
 use crate::observer::Quiet;
+use crate::recompute::{Recomputed, broken, design, json, text};
 use crate::resolved::{Resolved, SEVERAL};
 use crate::searches::Searches;
 use crate::tune::OPTIMUM;
@@ -48,14 +48,14 @@ pub static KIND: Kind = Kind {
     input: SEVERAL,
     rows: &[],
     whole: &[
-        ("table1-statements.json", again),
-        ("table2-statements.json", again),
-        ("figure*-statements.json", again),
+        ("table1-statements.json", recompute),
+        ("table2-statements.json", recompute),
+        ("figure*-statements.json", recompute),
     ],
     derived: &["study.json", "table1-*", "table2-*", "figure*", "index.html"],
 };
 
-/// Makes every item of the paper and the page that holds them, or only the item `only` (`table1`, `figure4`).
+/// Makes every item of the paper and their page, or only the item `only` (`table1`, `figure4`).
 ///
 /// # Errors
 /// The study is wrong, nothing can be computed, or the results cannot be written.
@@ -78,7 +78,7 @@ pub fn reproduce(request: &Request, only: Option<&str>, watch: &dyn Observer) ->
     }
     job.run(request, watch, |results| {
         results.write_json("study.json", &plan.file)?;
-        let quiet = Quiet(watch); // the page has the answers of its searches, and they their own logs
+        let quiet = Quiet(watch); // the page has the answers of the searches, which have their own logs
         let mut searches = Searches::new(results, &job.order, &quiet);
         let mut made = Vec::new();
         for entry in ENTRIES.iter().filter(|entry| only.is_none_or(|only| only == entry.name)) {
@@ -94,8 +94,8 @@ pub fn reproduce(request: &Request, only: Option<&str>, watch: &dyn Observer) ->
     })
 }
 
-/// An item kept by an interrupted run, or made now and kept in case this run is interrupted. One that makes searches is made again:
-/// they are resumed.
+/// An item kept by an interrupted run, or made now and kept in case this run is interrupted. Items with searches are always made, since
+/// their searches can be resumed.
 fn kept_or_made(
     entry: &Entry,
     plan: &Plan,
@@ -139,11 +139,11 @@ fn report(entry: &Entry, item: &Item) -> String {
     format!("{}{}", entry.title, lines.collect::<String>())
 }
 
-/// The statements of an item made again, from the designs that its searches came to, and with them its tables and data.
-fn again(place: &Path, name: &str) -> Result<Again, Error> {
-    let said = json(place, name)?;
+/// Recomputes the statements of an item with its tables and data, from the designs that its searches found.
+fn recompute(place: &Path, name: &str) -> Result<Recomputed, Error> {
+    let stored = json(place, name)?;
     let Some(entry) = ENTRIES.iter().find(|entry| statements(entry.name) == name) else {
-        return Ok(Again::Not("is of no item of the page".to_owned()));
+        return Ok(Recomputed::Failed("is of no item of the page".to_owned()));
     };
     let resolved = Resolved::read(place)?;
     let file = serde_json::from_value::<PaperPlan>(resolved.plan.clone());
@@ -159,24 +159,23 @@ fn again(place: &Path, name: &str) -> Result<Again, Error> {
     });
     let item = match item {
         Ok(item) => item,
-        Err(error) => return Ok(Again::Not(format!("cannot be made again: {error}"))),
+        Err(error) => return Ok(Recomputed::Failed(format!("cannot be made again: {error}"))),
     };
     let (mut files, mut made) = (Map::new(), Map::new());
-    for (name, again) in item.files(entry.name) {
+    for (name, content) in item.files(entry.name) {
         files.insert(name.clone(), text(place, &name).map_or(Value::Null, Value::from));
-        made.insert(name, again.into());
+        made.insert(name, content.into());
     }
-    Ok(Again::Of {
+    Ok(Recomputed::Part {
         what: "with its tables and data",
-        said: serde_json::json!({ "statements": said, "files": files }),
-        again: serde_json::json!({ "statements": item.statements, "files": made }),
+        stored: serde_json::json!({ "statements": stored, "files": files }),
+        recomputed: serde_json::json!({ "statements": item.statements, "files": made }),
     })
 }
 
-/// Checks a study file of any kind: what it asks for in words, and the jobs whose files it makes.
+/// Checks a study file of any kind, and describes it: the request in words, and the jobs that can be run on it.
 ///
-/// # Errors
-/// It, or a file that it names, is wrong.
+/// # Errors The file, or one that it names, is wrong.
 pub fn describe(path: &Path) -> Result<Described, Error> {
     let kind = study::kind_of(path)?;
     let (words, jobs) = match kind {
@@ -197,19 +196,19 @@ pub fn describe(path: &Path) -> Result<Described, Error> {
     Ok(Described { kind, words, jobs })
 }
 
-/// What a study file asks for.
+/// The description of a study file.
 #[derive(Debug)]
 pub struct Described {
     /// Its kind.
     pub kind: study::Kind,
-    /// What it asks for, in words.
+    /// The request in words.
     pub words: String,
-    /// The jobs whose files it makes.
+    /// The jobs that can be run on it.
     pub jobs: Vec<&'static Kind>,
 }
 
 impl Described {
-    /// The same as JSON.
+    /// The description as JSON.
     pub fn json(&self, path: &Path) -> Value {
         let lines: Vec<&str> = self.words.lines().map(str::trim).collect();
         let files = |job: &&Kind| job.files().map(|(name, _)| name).collect::<Vec<_>>();

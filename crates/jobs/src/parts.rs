@@ -1,7 +1,7 @@
-//! A share of a work of many points, for many machines: `--shard 3/64` computes the third of sixty-four shares and writes it as one
-//! part, whose name holds the hash of its content. A part never changes: it exists complete, or not at all.
+//! Shares of a computation of many points, for many machines: `--shard 3/64` computes the third of 64 shares and writes it as one part,
+//! whose name holds the hash of its content. A part never changes: it exists complete or not at all.
 //!
-//! Points are those of a grid with one number each, or of a sweep with several; a part holds the numbers one after the other.
+//! Points are those of a grid, with one number each, or of a sweep, with several; a part holds the numbers in sequence.
 
 use crate::rows::{Rows, compute};
 use crate::{Error, Observer, job};
@@ -24,7 +24,7 @@ const LONGEST: u64 = 1024;
 /// The directory of parts, in that of the results.
 pub const PARTS: &str = "parts";
 
-/// The end of the words on a part that is damaged.
+/// The end of the message on a damaged part.
 const DAMAGED: &str = ": make it again";
 
 /// The ending of a part.
@@ -63,7 +63,7 @@ impl Shard {
         end(self.index - 1)..end(self.index)
     }
 
-    /// The beginning of the part's name.
+    /// The prefix of the part's name.
     fn name(self) -> String {
         format!("{:05}-of-{:05}", self.index, self.count)
     }
@@ -78,15 +78,15 @@ struct Head {
     pub identity: Identity,
     /// Its share.
     pub shard: Shard,
-    /// Its numbers, by their place in the whole work.
+    /// The range of its numbers in the whole computation.
     pub points: Range<usize>,
 }
 
-/// Rows of which shares become parts, in the directory of their results.
+/// Rows that are computed in shares, with the directory of their results.
 pub struct Shared<'a> {
     /// The rows to share.
     pub rows: &'a dyn Rows,
-    /// The identity of the whole work.
+    /// The identity of the whole computation.
     pub identity: Identity,
     /// The directory of its results; parts are in [`PARTS`] in it.
     pub out: &'a Path,
@@ -97,7 +97,7 @@ pub struct Shared<'a> {
 }
 
 impl Shared<'_> {
-    /// Computes a share and writes it, unless the part is there already. One that is damaged is made again.
+    /// Computes a share and writes it as a part, unless that exists; a damaged part is replaced.
     pub fn make(&self, shard: Shard, watch: &dyn Observer) -> Result<(), Error> {
         let Self { rows, ref identity, out, order, .. } = *self;
         let (len, width, parts) = (rows.len(), rows.width(), out.join(PARTS));
@@ -115,11 +115,11 @@ impl Shared<'_> {
             };
             return match identity.difference(&head.identity) {
                 None => {
-                    // The process that made it may have been killed before it removed its work.
+                    // The process that made it may have been killed before it removed its working directory.
                     if let Some(work) = place.exists().then(|| {
                         open(&place, &Order { begin: Begin::Restart, ..order.clone() }, identity, watch)
                     }) {
-                        put_away(work?, &place);
+                        discard(work?, &place);
                     }
                     watch.result(&format!("{} is there already", path.display()))
                 }
@@ -136,12 +136,12 @@ impl Shared<'_> {
         work.journal().check()?;
         let values: Vec<f64> = found.into_iter().flat_map(|(numbers, _)| numbers).collect();
         let path = write(&work, shard, identity, width * some.start, &values, &parts)?;
-        put_away(work, &place);
+        discard(work, &place);
         watch.result(&format!("wrote {}", path.display()))
     }
 }
 
-/// Writes a part that begins with number `first` of the whole work; returns its path.
+/// Writes a part that begins with number `first` of the whole computation; returns its path.
 fn write(
     work: &Directory,
     shard: Shard,
@@ -175,7 +175,7 @@ fn open(place: &Path, order: &Order, identity: &Identity, watch: &dyn Observer) 
     job::open(place, order, identity, Extent::Share, |_| false, watch)
 }
 
-fn put_away(work: Directory, place: &Path) {
+fn discard(work: Directory, place: &Path) {
     work.discard();
     drop(work); // removes the lock
     let _ = std::fs::remove_dir(place); // empty by now; otherwise it is not ours
@@ -203,7 +203,7 @@ fn list(parts: &Path) -> Result<Vec<PathBuf>, Error> {
         .collect())
 }
 
-/// Reads a part and calls `visit` with each of its points and its value.
+/// Reads a part and calls `visit` with the index and value of each of its numbers.
 fn read(path: &Path, mut visit: impl FnMut(usize, f64)) -> Result<Head, Error> {
     let refuse = |source| retune_store::Error::Input { path: path.to_owned(), source };
     let broken = |problem: &str| Error::Part { path: path.to_owned(), problem: problem.to_owned() };
@@ -250,11 +250,11 @@ fn head(path: &Path, text: &str) -> Option<Head> {
     })
 }
 
-/// Most shares that a message names.
+/// Most missing ranges or shares that a message names.
 const NAMED: usize = 5;
 
 impl Shared<'_> {
-    /// Takes the numbers of all rows from the files `parts`, or from all in the directory of parts if there are none, into the journal.
+    /// Reads the numbers of all rows into the journal, from the files `parts` or, if there are none, from all in the directory of parts.
     pub fn merge(
         &self,
         parts: &[PathBuf],
@@ -322,7 +322,7 @@ fn check(heads: &mut [Head], len: usize, command: &str, place: &Path) -> Result<
     })
 }
 
-/// The missing shares, if all parts are of the same number of shares.
+/// The missing shares, if all parts have the same number of shares.
 fn missing_shards(heads: &[Head]) -> Option<Vec<String>> {
     let count = heads.first()?.shard.count;
     let is_there = |index: usize| heads.iter().any(|head| head.shard.index == index);

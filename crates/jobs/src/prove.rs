@@ -1,9 +1,10 @@
-//! `prove`: a proof by interval arithmetic of the periodic motion of a scene. The solver guesses the motion, and `retune_proof` owes it nothing else.
+//! `prove`: a proof by interval arithmetic of the periodic motion of a scene. The solver only guesses the motion; `retune_proof` relies on
+//! nothing else of it.
 
 pub mod band;
 
 use crate::Error;
-use crate::again::json;
+use crate::recompute::json;
 use crate::tune::OPTIMUM;
 use band::{Band, LeftOut, steady_band};
 use rayon::prelude::*;
@@ -15,18 +16,19 @@ use serde::Serialize;
 use std::fmt;
 use std::path::Path;
 
-/// Where the motion is looked for.
+/// The guess of the motion.
 #[derive(Clone, Debug, Default)]
 pub struct Guess {
     /// Other values of parameters of the scene.
     pub settings: Vec<Setting>,
-    /// The frequency of the force, rad/s; that of the worst run of a search's results, or of the scene, if left out.
+    /// The frequency of the force, rad/s; by default that of the worst run of a search's results, else the scene's.
     pub omega: Option<Setting>,
-    /// A state at a crest of the force, and after how many periods of the force the motion repeats; what the run of the scene settles on if left out.
+    /// A state at a crest of the force, and the number of periods after which the motion repeats; by default the motion on which a run of
+    /// the scene settles.
     pub from: Option<(Start, usize)>,
 }
 
-/// What is proven.
+/// A proven motion.
 #[derive(Clone, Debug, Serialize)]
 pub struct Proof {
     study: String,
@@ -60,7 +62,7 @@ pub fn prove(path: &Path, guess: &Guess) -> Result<Proof, Error> {
     Ok(Proof { study: study.name().to_owned(), omega: study.scene.forcing.frequency.get(), theorem })
 }
 
-/// Why nothing is proven of a study.
+/// The error of a study of which nothing is proven.
 fn not_proven(study: &Study, mut why: String) -> Error {
     if study.scene.damper.is_some_and(|damper| damper.is_floating()) {
         why += "; without a spring (k2 = 0) a damper that touches no wall repeats wherever it floats, and no such motion is alone";
@@ -78,13 +80,13 @@ fn worst(path: &Path) -> Result<Option<Setting>, Error> {
     Ok(worst.map(|omega| Setting::new(Parameter::Omega, omega)))
 }
 
-/// What the run settles on.
+/// The periodic motion on which the run settles: its periods and state.
 fn found(study: &Study) -> Result<(usize, [f64; 4]), Error> {
     let none = || {
         let why = "none found: the run settles on no periodic motion; give --from and --periods, or another --omega";
         not_proven(study, why.to_owned())
     };
-    // What touches no wall has one motion that repeats, whatever the guess; what has no such run is refused by the proof, in its words.
+    // Without walls there is one periodic motion, whatever the guess; without a frequency the proof itself refuses the scene.
     let has_walls = study.scene.damper.is_some_and(|damper| damper.contact.is_some());
     if !has_walls || study.scene.forcing.frequency.get() <= 0.0 {
         return Ok((1, [0.0; 4]));
@@ -103,7 +105,7 @@ impl fmt::Display for Proof {
             "exists        a motion that repeats after {} of the force and strikes {strikes}",
             counted(*periods as u64, "period")
         )?;
-        // Two digits, of 5 % less and more: as many, rounded to nearest, of these themselves may say too much.
+        // Two digits of 5 % less and more, since rounding the values themselves to nearest could overstate them.
         let other = alone_within.map_or("motion that touches no wall repeats".to_owned(), |within| {
             format!("such motion is in a box {:.1e} wide about its states at the events", 0.95 * within)
         });
@@ -120,7 +122,7 @@ impl fmt::Display for Proof {
     }
 }
 
-/// What is proven of a band of frequencies.
+/// A proof over a band of frequencies.
 #[derive(Clone, Debug, Serialize)]
 pub struct BandProof {
     study: String,
@@ -128,19 +130,18 @@ pub struct BandProof {
     /// Bounds on the largest E1max over the band, J.
     #[serde(rename = "E1max")]
     energy: Interval,
-    /// Its pieces, and what they leave out.
+    /// The proven pieces, and the parts left out.
     #[serde(flatten)]
     pub band: Band,
 }
 
-/// Frequencies that are proven one after another, rad/s; the shares of a band are proven side by side.
+/// Width, rad/s, of the shares of a band that are proven in parallel.
 const SHARE: f64 = 0.1;
 
-/// Proves stable motions with an E1max of at most `most` (J) over a band: the steady ones, if the damper then touches no wall at any frequency of the band, or else
-/// at each frequency one near that on which the run of the scene settles.
+/// Proves stable motions with an E1max of at most `most` (J) over a band: the steady ones, if with them the damper touches no wall at any
+/// frequency; else at each frequency one near that on which a run of the scene settles.
 ///
-/// # Errors
-/// The input is wrong, or nothing of the band can be proven.
+/// # Errors The input is wrong, or nothing can be proven over any part of the band.
 pub fn prove_band(
     path: &Path,
     settings: &[Setting],
@@ -163,7 +164,7 @@ pub fn prove_band(
     }
 }
 
-/// The proof over the shares of a band, side by side.
+/// Proves the shares of a band in parallel.
 fn by_shares(study: &Study, [from, to]: [f64; 2], most: f64) -> Band {
     let guess = |omega: f64| {
         let scene = Parameter::Omega.at(study.scene, omega).ok()?;
@@ -178,8 +179,7 @@ fn by_shares(study: &Study, [from, to]: [f64; 2], most: f64) -> Band {
 impl BandProof {
     /// Whether it proves an E1max of at most `most` (J) at every frequency.
     ///
-    /// # Errors
-    /// [`Error::NotProven`], where it leaves some out.
+    /// # Errors [`Error::NotProven`], if it leaves some out.
     pub fn holds(&self, most: f64) -> Result<(), Error> {
         if most.is_infinite() || self.band.left_out.is_empty() {
             return Ok(());

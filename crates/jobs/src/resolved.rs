@@ -1,6 +1,6 @@
 //! The complete input of results, with every default written out: `study.json` of one study, `resolved.json` of several.
 
-use crate::{Error, again};
+use crate::{Error, recompute};
 use retune_store::{Identity, json_text};
 use retune_study::{Study, read::from_text};
 use serde::{Deserialize, Serialize};
@@ -17,15 +17,15 @@ pub fn identity_of(study: &Study) -> Result<Identity, Error> {
     Ok(Identity::of(&study_text(study)?))
 }
 
-/// The name of the file that the complete input is written to, if it is one study.
+/// The file of the complete input, if it is one study.
 pub const ONE: &str = "study.json";
-/// The same for several studies.
+/// The file of the complete input for several studies.
 pub const SEVERAL: &str = "resolved.json";
 
 /// The plan and the study of each damper.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Resolved {
-    /// The input beside the studies.
+    /// The input besides the studies.
     pub plan: Value,
     dampers: Vec<Damper>,
 }
@@ -37,7 +37,7 @@ struct Damper {
 }
 
 impl Resolved {
-    /// From a plan and the studies of the dampers that it names.
+    /// The complete input from a plan and the studies of the named dampers.
     pub fn new<'a>(plan: Value, studies: impl Iterator<Item = (&'a str, &'a Study)>) -> Self {
         let damper = |(name, study): (&str, &Study)| Damper {
             damper: name.to_owned(),
@@ -53,8 +53,8 @@ impl Resolved {
 
     /// Reads the file in a directory of results.
     pub fn read(place: &Path) -> Result<Self, Error> {
-        let text = again::text(place, SEVERAL)?;
-        serde_json::from_str(&text).map_err(|error| again::broken(place, SEVERAL, error.to_string()))
+        let text = recompute::text(place, SEVERAL)?;
+        serde_json::from_str(&text).map_err(|error| recompute::broken(place, SEVERAL, error.to_string()))
     }
 
     /// The name and the study of each damper.
@@ -64,11 +64,11 @@ impl Resolved {
         self.dampers.iter().map(study).collect()
     }
 
-    /// The plan and the study in a directory of results that are of one study.
+    /// The plan and the study in a directory of results of a single study.
     pub fn one(place: &Path) -> Result<(Value, Study), Error> {
         let resolved = Self::read(place)?;
         let first = resolved.studies()?.into_iter().next();
-        let (_, study) = first.ok_or_else(|| again::broken(place, SEVERAL, "it names no study"))?;
+        let (_, study) = first.ok_or_else(|| recompute::broken(place, SEVERAL, "it names no study"))?;
         Ok((resolved.plan, study))
     }
 }

@@ -1,17 +1,17 @@
-//! `retention`: how long a tuning lasts. Dampers tuned for one stiffness k1 of the structure, for the worst over several, and anew for each; E1max
-//! of each along k1; the range of k1 in which it still does its work, and what a wider range costs.
+//! `retention`: how well a tuning holds as the stiffness k1 of the structure changes. Dampers are tuned for one k1, for the worst over
+//! several, and for each; the results are E1max along k1, the range of k1 in which a design stays effective, and the cost of a wider range.
 //!
-//! Each damper is tuned for its study's own k1 first, then outwards from there: every search of the study is made again, and one
-//! more refinement starts at the design of the neighbouring k1. Read `anew` (the searches), `tuned` (what they give), `curves`, `range`,
-//! `trade`, `force`, then `page`.
+//! Each damper is tuned for the nominal k1 of its study first, then outwards from there: the study's search is repeated, with one more
+//! refinement from the design of the neighbouring k1. Read `anew` (the searches), `tuned` (their results), `curves`, `range`, `trade`,
+//! `force`, then `page`.
 
-mod again;
 mod anew;
 mod curves;
 mod draw;
 mod force;
 mod page;
 mod range;
+mod recompute;
 mod retained;
 mod trade;
 mod tuned;
@@ -40,7 +40,12 @@ pub static KIND: Kind = Kind {
     command: "retention",
     answer: DESIGNS,
     input: resolved::SEVERAL,
-    rows: &[(DESIGNS, again::again), (CURVES, again::again), (RANGES, again::again), (FORCES, again::again)],
+    rows: &[
+        (DESIGNS, recompute::rows),
+        (CURVES, recompute::rows),
+        (RANGES, recompute::rows),
+        (FORCES, recompute::rows),
+    ],
     whole: &[],
     derived: &[
         "retune.txt",
@@ -54,7 +59,7 @@ pub static KIND: Kind = Kind {
     ],
 };
 
-/// Tunes dampers anew for each stiffness of the primary structure, and for the worst over all, and computes how long each tuning lasts.
+/// Tunes dampers for each stiffness of the primary structure and for the worst over all, and computes the retention of each tuning.
 ///
 /// # Errors
 /// A study or a stiffness is wrong, nothing can be computed, or the results cannot be written.
@@ -63,7 +68,7 @@ pub fn retention(
     stiffnesses: &[Setting],
     watch: &dyn Observer,
 ) -> Result<Done<Retained>, Error> {
-    let (said, rows) = study::read_rows(&request.study)?;
+    let (options, rows) = study::read_rows(&request.study)?;
     for setting in stiffnesses {
         rows.iter().try_for_each(|row| row.study.with(std::slice::from_ref(setting)).map(drop))?;
     }
@@ -74,17 +79,17 @@ pub fn retention(
     k1.extend(rows.iter().map(|row| row.study.scene.primary.stiffness.get()));
     k1.sort_by(f64::total_cmp);
     k1.dedup();
-    let plan = json!({ "k1": k1, "k2_bounds": said.k2_bounds, "samples": said.samples });
+    let plan = json!({ "k1": k1, "k2_bounds": options.k2_bounds, "samples": options.samples });
     let studies = rows.iter().map(|row| (row.damper.as_str(), &row.study));
     let job = Job::of_studies(&KIND, request, plan, studies)?;
     job.run(request, watch, |directory| {
         let mut searches = Searches::new(directory, &job.order, watch);
         let (mut dampers, mut designs) = (Vec::new(), Vec::new());
         for row in &rows {
-            let (tuned, rows) = anew::tune(row, &said, &others, &mut searches)?;
+            let (tuned, rows) = anew::tune(row, &options, &others, &mut searches)?;
             designs.extend(given(&tuned));
             designs.extend(rows.into_iter().map(|row| on_common_samples(&tuned, row, &k1)));
-            dampers.push(tuned.judged()?);
+            dampers.push(tuned.with_thresholds()?);
         }
         let table = Designs { column: "tuning", rows: designs, infeasible: searches.infeasible.take() };
         let (curves, forced) = (curves::curves(&dampers), force::forced(&dampers));
@@ -97,7 +102,7 @@ pub fn retention(
         directory.write(CURVES, &curves::table(&dampers, &curves).csv())?;
         directory.write(RANGES, &trade::table(&dampers, kept.iter().chain(&points)).csv())?;
         table.write("retune", directory)?;
-        let bounds = said.k2_bounds;
+        let bounds = options.k2_bounds;
         let retained = Retained { dampers, bounds, curves, forced, kept, points, table };
         page::write(&retained, directory)?;
         let report = format!("\n{}\n\n{}", page::answer(&retained).join("\n"), retained.table.text());
@@ -105,18 +110,18 @@ pub fn retention(
     })
 }
 
-/// A row with E1max on the common samples, so that designs are compared on the same frequencies.
+/// The row with E1max on the common samples, so that designs are compared on the same frequencies.
 fn on_common_samples(tuned: &Tuned, row: Row, k1: &[f64]) -> Row {
     let at = row.found.design_of(tuned.study().varied());
     let e1_max = tuned.energy_as_tuned(&row.label, &at, k1).unwrap_or(f64::NAN);
     Row { e1_max, ..row }
 }
 
-/// The row of the design that is given at the stiffness of its study. It has no certificate here.
+/// The row of the given design at the nominal stiffness. It is not certified here.
 fn given(tuned: &Tuned) -> Option<Row> {
     let (tuning, at) = *tuned.kept.iter().find(|(tuning, _)| Tuning::GIVEN.contains(tuning))?;
     let damper = tuned.study().scene.damper?;
-    let whose = if tuning == Tuning::Paper { "the paper's design" } else { "the design of the study" };
+    let origin = if tuning == Tuning::Paper { "the paper's design" } else { "the design of the study" };
     Some(Row {
         label: tuning.name().to_owned(),
         damper: tuned.name.clone(),
@@ -125,7 +130,7 @@ fn given(tuned: &Tuned) -> Option<Row> {
         e1_max: tuned.energy(&at, tuned.nominal()),
         none: tuned.study().energy_without_damper(),
         verdict: "",
-        reason: format!("{whose} is not certified here"),
+        reason: format!("{origin} is not certified here"),
         needs: Largest::of(tuned.study(), &tuned.study().scene_at(&at)?),
     })
 }

@@ -1,14 +1,14 @@
-//! The rows of a table that are known before any of them is computed: those of a grid, of a sweep. They are computed in parallel; what the
-//! journal knows is not computed again; a share of them can be computed on another machine (`parts`).
+//! Tables whose rows are known in advance, such as grids and sweeps. Rows are computed in parallel, values in the journal are reused, and
+//! shares of the rows can be computed on other machines (`parts`).
 
 use crate::{Error, Observer, Progress};
 use rayon::prelude::*;
 use retune_store::Journal;
 use std::ops::Range;
 
-/// Such rows. Each depends on its number alone, so that they can be computed in any order.
+/// The rows of a table. Each depends only on its index, so that they can be computed in any order.
 pub trait Rows: Sync {
-    /// How many there are.
+    /// The number of rows.
     fn len(&self) -> usize;
 
     /// Whether there are none.
@@ -16,17 +16,17 @@ pub trait Rows: Sync {
         self.len() == 0
     }
 
-    /// The number of numbers that each has.
+    /// The number of numbers in each row.
     fn width(&self) -> usize;
 
-    /// The numbers of a row, infinite where there is none; and then why the first of them has no value.
+    /// The numbers of a row, infinite where missing, and if so the reason for the first.
     fn numbers(&self, row: usize) -> (Vec<f64>, Option<String>);
 
-    /// Hears of the numbers of a row that are not computed again.
+    /// Receives the numbers of a row that are taken from the journal.
     fn recall(&self, _numbers: &[f64]) {}
 }
 
-/// The numbers of some rows, in their order, each with the reason where it has none. The progress is told of each row.
+/// Computes a range of rows in order: their numbers, and the reason where some are missing. Reports progress for each row.
 pub fn compute(
     rows: &dyn Rows,
     some: Range<usize>,
@@ -53,10 +53,9 @@ pub fn compute(
     some.into_par_iter().map(row).collect()
 }
 
-/// What a function gives for each of some things, side by side. The progress is told of each.
+/// Applies a function to all items in parallel, in order. Reports progress for each item.
 ///
-/// # Errors
-/// That of the first thing for which it fails, not of the first thread.
+/// # Errors The error of the first item in order that fails, independent of the threads.
 pub fn of_each<T: Sync, U: Send>(
     all: &[T],
     progress: &dyn Progress,
@@ -72,7 +71,7 @@ pub fn of_each<T: Sync, U: Send>(
     made.into_iter().collect()
 }
 
-/// The same as a stage of its own, whose progress is told.
+/// [`of_each`] as a stage with its own progress.
 ///
 /// # Errors
 /// As [`of_each`].

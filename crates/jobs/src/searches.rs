@@ -1,4 +1,4 @@
-//! The searches that a larger job is made of, each a job of its own below the directory of the whole.
+//! The searches of a larger job, each a job in a directory below that of the larger one.
 
 use crate::observer::Quiet;
 use crate::rows::in_a_stage;
@@ -12,25 +12,25 @@ use retune_study::Study;
 pub struct Searches<'a> {
     directory: &'a Directory,
     order: &'a Order,
-    /// Who is told of them.
+    /// The observer of the searches.
     pub watch: &'a dyn Observer,
     pub results: Vec<Directory>,
-    /// The error of the first search that found none within its limits.
+    /// The error of the first search that found no feasible design.
     pub infeasible: Option<Error>,
 }
 
 impl<'a> Searches<'a> {
-    /// No search yet; they will be below `directory`.
+    /// No searches yet; their directories will be below `directory`.
     pub fn new(directory: &'a Directory, order: &'a Order, watch: &'a dyn Observer) -> Self {
         Self { directory, order, watch, results: Vec::new(), infeasible: None }
     }
 
-    /// The journal of the whole job: a search of the job itself, which has no directory of its own, keeps its values there.
+    /// The journal of the larger job, which keeps the values of searches without a directory of their own.
     pub fn journal(&self) -> &Journal {
         self.directory.journal()
     }
 
-    /// Makes the search of a study, its results in `place/` and the name of the study.
+    /// Runs the search of a study; its results are in `place/` and the name of the study.
     pub fn tune(&mut self, study: &Study, place: &str) -> Result<Optimum, Error> {
         let name =
             if place.is_empty() { study.name().to_owned() } else { format!("{place}/{}", study.name()) };
@@ -40,7 +40,8 @@ impl<'a> Searches<'a> {
         Ok(optimum)
     }
 
-    /// The ends of the searches of some studies, side by side, each with a name of its own; what each is told is not shown.
+    /// Runs the searches of several studies in parallel, each under its own name, without reporting their progress; returns the designs
+    /// found.
     pub fn ends_of_all(&self, all: &[(Study, String)]) -> Result<Vec<Ends>, Error> {
         let quiet = Quiet(self.watch);
         let search =

@@ -12,7 +12,7 @@ use std::path::Path;
 
 const MOST_ROWS: u32 = 100_000_000;
 
-/// The first characters of every trajectory, of this and of earlier versions, by which a file is recognised as one.
+/// The beginning of every trajectory file, of this and earlier versions, by which it is recognised.
 const HEAD: &str = "t,x1,v1,x2,v2,";
 
 /// The output of the motion of a run.
@@ -20,7 +20,7 @@ const HEAD: &str = "t,x1,v1,x2,v2,";
 pub struct Trajectory<'a> {
     /// The file.
     pub file: &'a Path,
-    /// Time between two rows of its grid, s.
+    /// Time between equidistant rows, s.
     pub interval: f64,
     /// Files that it must not replace.
     pub inputs: &'a [&'a Path],
@@ -62,7 +62,7 @@ pub fn simulate(study: &Study, trajectory: Option<Trajectory>) -> Result<Simulat
     })
 }
 
-/// One run as the command line shows it: its summary, and the same in the units and the ratio that engineers ask for.
+/// One run as shown on the command line: its summary, with derived quantities in engineering units.
 #[derive(Clone, Debug, Serialize)]
 pub struct Simulation {
     /// The observations in the window.
@@ -78,18 +78,18 @@ pub struct Simulation {
     /// As [`retune_solver::decay_time`]; null if that is not within the run.
     #[serde(skip_serializing_if = "Option::is_none")]
     decay_time: Option<f64>,
-    /// What the contacts are like; null if no wall is touched.
+    /// The contacts; null if no wall is touched.
     contacts: Option<Contacts>,
-    /// Where the energy goes, W.
+    /// The dissipated powers, W.
     #[serde(rename = "power_lost")]
     powers: Powers,
-    /// Where the law of the contact is used outside of what it holds for.
+    /// Warnings where the contact law is used outside its range of validity.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     warnings: Vec<String>,
-    /// What is to be known of the transient in the window.
+    /// A note on the transient in the window.
     #[serde(skip_serializing_if = "Option::is_none")]
     transient: Option<String>,
-    /// The stationary motion under the spectrum of which the force is a draw; none of any other, and of a damper with walls.
+    /// The stationary motion under the spectrum from which the force is drawn; none for other forcings or a damper with walls.
     #[serde(skip_serializing_if = "Option::is_none")]
     stationary: Option<Means>,
 }
@@ -164,8 +164,8 @@ fn write_trajectory(study: &Study, file: &Path, interval: f64) -> Result<(), Err
     Ok(csv.finish()?)
 }
 
-/// Passes on the motion in the window as CSV, line by line: a row every `interval` seconds, and one for each event between them (column
-/// `moment`). The last column names the kind of row, so that `df[df.moment == "grid"]` are the equidistant ones.
+/// Passes the motion in the window to `push` as CSV, line by line: a row every `interval` seconds, and one for each event between them. The
+/// last column, `moment`, names the kind of row: `df[df.moment == "grid"]` are the equidistant ones.
 ///
 /// # Errors
 /// The interval is invalid, the run fails, or the first error of `push`.

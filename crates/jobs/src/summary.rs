@@ -1,4 +1,4 @@
-//! The results of a run: one type, from which JSON and text are made.
+//! The results of a run: one type for both JSON and text.
 
 use crate::describe::{LEFT_OUT, forced};
 use retune_model::{Damper, Design, Measure, Parameter, Positive, Scene, Source, energy_ratios};
@@ -19,7 +19,7 @@ pub struct Summary {
     r1: f64,
     #[serde(rename = "R2")]
     r2: f64,
-    /// Largest sizes of the structure's displacement, velocity and acceleration, and of its force on the ground.
+    /// Largest magnitudes of the structure's displacement, velocity and acceleration, and of its force on the ground.
     #[serde(flatten, serialize_with = "by_name")]
     structure: [(&'static str, Extreme); 4],
     impacts: Walls<u64>,
@@ -39,7 +39,7 @@ pub struct Summary {
     parameters: Scene,
 }
 
-/// Each value by its name, and when it is reached, s.
+/// Serialises each value by its name, and the time at which it is reached, s.
 fn by_name<S: Serializer>(all: &[(&'static str, Extreme)], serializer: S) -> Result<S::Ok, S::Error> {
     let both =
         |(name, at): &(&str, Extreme)| [((*name).to_owned(), at.value), (format!("t_{name}"), at.time)];
@@ -185,7 +185,7 @@ impl Summary {
         [self.impacts.primary, self.impacts.obstacle]
     }
 
-    /// The paper's name for the damper: a TMD never touches.
+    /// The paper's name for the damper: a TMD touches no wall.
     pub fn damper_type(&self) -> &'static str {
         match self.scene {
             SceneKind::Contact => "SSVI NES",
@@ -259,22 +259,22 @@ impl std::fmt::Display for Summary {
     }
 }
 
-/// Whether a value that is not zero would lose digits with a fixed number of decimals, as those of a light rig.
+/// Whether a value is so small, as in a light test rig, that a fixed number of decimals would lose digits.
 fn is_small(value: f64) -> bool {
     value != 0.0 && value.abs() < 1e-3
 }
 
-/// A force to three decimals, or, where it is small, to four digits.
+/// A force to three decimals, or to four significant digits if it is small.
 fn newtons(value: f64) -> String {
     if value != 0.0 && value.abs() < 0.1 { rounded(value, 4) } else { format!("{value:.3}") }
 }
 
-/// A value to seven decimals, or, where it is small, to as many digits.
+/// A value to seven decimals, or with an exponent if it is small.
 pub(crate) fn digits(value: f64) -> String {
     if is_small(value) { format!("{value:.7e}") } else { format!("{value:.7}") }
 }
 
-/// The damper of a study's scene: the paper's where it has the numbers of an optimum that the paper publishes.
+/// The damper of a study's scene in words: the paper's if it has the numbers of an optimum published there.
 pub fn baseline(scene: &Scene) -> &'static str {
     if scene.damper.as_ref().is_some_and(is_of_paper) {
         "the paper's damper"
@@ -283,12 +283,12 @@ pub fn baseline(scene: &Scene) -> &'static str {
     }
 }
 
-/// A ratio above 1 in three digits, or in words where nobody would read its digits.
+/// A ratio above 1 to three digits, or in words if it is huge.
 pub fn how_many(times: f64) -> String {
     if times >= 1e6 { "over a million".to_owned() } else { rounded(times, 3) }
 }
 
-/// A ratio to what it is compared with, in three digits.
+/// A ratio in words, to three digits.
 pub fn as_much(ratio: f64) -> String {
     match how_many(ratio).as_str() {
         "1" => "as much".to_owned(),
@@ -302,20 +302,20 @@ pub struct TunedDamper {
     /// m2, mass, kg.
     #[serde(rename = "m2")]
     pub mass: Positive,
-    /// k2, c2, D, C, and what else is varied of it.
+    /// k2, c2, D, C, and its other varied parameters.
     #[serde(flatten)]
     pub design: Design,
 }
 
-/// Whether it is a gap that nobody can build: a search that ends where there is none stops short of it, at 1e-16 m.
+/// Whether a gap is practically zero: a search towards zero stops just above it, at 1e-16 m.
 pub(crate) fn is_no_gap(parameter: Parameter, value: f64) -> bool {
-    /// The least gap that is one, m.
+    /// The smallest gap that can be built, m.
     const BUILT: f64 = 1e-9;
     [Parameter::D, Parameter::C].contains(&parameter) && value < BUILT
 }
 
 impl TunedDamper {
-    /// From a damper of a scene, with what is varied of it.
+    /// From the damper of a scene, with its varied parameters.
     pub fn of(damper: &Damper, varied: &[Parameter]) -> Self {
         let others: Vec<Parameter> =
             varied.iter().copied().filter(|parameter| *parameter != Parameter::M2).collect();
@@ -329,17 +329,17 @@ impl TunedDamper {
         Design::new(value).unwrap_or(self.design)
     }
 
-    /// The numbers in words, each to its digits: `m2 = 60 kg, k2 = 215 N/m, …`.
+    /// The parameters in words, each to the given digits: `m2 = 60 kg, k2 = 215 N/m, …`.
     pub fn words(&self, digits: impl Fn(Parameter) -> usize) -> String {
         let mass = [(Parameter::M2, self.mass.get())];
         let design = Parameter::VARIED.map(|parameter| (parameter, self.design.get(parameter)));
         let known = mass.into_iter().chain(design).filter(|(_, value)| !value.is_nan());
-        let said: Vec<String> = known
+        let texts: Vec<String> = known
             .map(|(parameter, value)| {
                 let value = if is_no_gap(parameter, value) { 0.0 } else { value };
                 format!("{parameter} = {} {}", rounded(value, digits(parameter)), parameter.unit())
             })
             .collect();
-        said.join(", ") + if self.design.get(Parameter::D).is_nan() { ", no walls" } else { "" }
+        texts.join(", ") + if self.design.get(Parameter::D).is_nan() { ", no walls" } else { "" }
     }
 }

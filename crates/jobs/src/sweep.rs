@@ -32,10 +32,10 @@ pub mod words;
 pub use plan::{Options, Plan, Quantity};
 pub use points::Sweep;
 
-use crate::again::{Row, Source, broken};
 use crate::artefact::Kind;
 use crate::job::{Job, Made};
 use crate::parts::{Shard, Shared};
+use crate::recompute::{Row, Source, broken};
 use crate::resolved::{self, Resolved};
 use crate::rows::{Rows, compute};
 use crate::{Error, Observer, Request};
@@ -48,7 +48,7 @@ use std::path::Path;
 
 /// The file with all points.
 pub const FILE: &str = "sweep.csv";
-/// The same as JSON.
+/// All points as JSON.
 const JSON: &str = "sweep.json";
 
 /// The files of a sweep.
@@ -56,7 +56,7 @@ pub static KIND: Kind = Kind {
     command: "sweep",
     answer: JSON,
     input: resolved::SEVERAL,
-    rows: &[(FILE, again)],
+    rows: &[(FILE, recompute)],
     whole: &[],
     derived: &[JSON, "sweep.txt", "sweep.svg"],
 };
@@ -64,20 +64,20 @@ pub static KIND: Kind = Kind {
 // A journal must hold every sweep; no point has more than 17 numbers.
 const _: () = assert!(17 * plan::MOST_POINTS <= retune_store::MOST_POINTS);
 
-/// What becomes of the points of a sweep.
+/// How the points of a sweep are obtained.
 #[derive(Clone, Debug, Default)]
 pub enum Points {
     /// All are computed.
     #[default]
     All,
-    /// Those of a share are computed, and written as a part.
+    /// The points of a share are computed and written as a part.
     Share(Shard),
-    /// They are read from the parts that shares have made.
+    /// They are read from the parts of all shares.
     Merged,
 }
 
 impl Points {
-    /// Those that two options ask for.
+    /// The choice of the options `--shard` and `--merge`.
     pub fn of(shard: Option<Shard>, merge: bool) -> Self {
         shard.map_or(if merge { Self::Merged } else { Self::All }, Self::Share)
     }
@@ -85,8 +85,7 @@ impl Points {
 
 /// Sweeps a parameter through a study, or through the design that a search found.
 ///
-/// # Errors
-/// The study or what is asked for is wrong, parts are missing, or the results cannot be written.
+/// # Errors The study or the request is wrong, parts are missing, or the results cannot be written.
 pub fn sweep(
     request: &Request,
     options: &Options,
@@ -137,7 +136,7 @@ fn write(sweep: &Sweep, results: &Directory, watch: &dyn Observer) -> Result<Str
     Ok(few)
 }
 
-/// The table with what made it.
+/// The table with its origin.
 fn json(sweep: &Sweep, table: &Table) -> Value {
     let mut json = json!({ "retune": VERSION, "study": sweep.study().name(), "sweep": sweep.plan() });
     json["window"] = json!(sweep.study().window);
@@ -151,8 +150,8 @@ fn json(sweep: &Sweep, table: &Table) -> Value {
     json
 }
 
-/// A row of the table, computed again: every number of it.
-fn again(place: &Path, _name: &str) -> Result<Source, Error> {
+/// Recomputes every number of a row of the table.
+fn recompute(place: &Path, _name: &str) -> Result<Source, Error> {
     let (plan, study) = Resolved::one(place)?;
     let plan =
         serde_json::from_value(plan).map_err(|error| broken(place, resolved::SEVERAL, error.to_string()))?;

@@ -1,4 +1,4 @@
-//! `table2`: the same search for several dampers, from the paper's own designs.
+//! `table2`: searches for several dampers, from the paper's designs.
 
 use crate::artefact::Kind;
 use crate::certify::judge;
@@ -17,13 +17,13 @@ pub static KIND: Kind = Kind {
     command: "table2",
     answer: "table2.csv",
     input: resolved::SEVERAL,
-    rows: &[("table2.csv", designs::again)],
+    rows: &[("table2.csv", designs::recompute)],
     whole: &[],
     derived: &["table2.txt"],
 };
 
-/// Re-optimises each row of Table 2 from its reference design, the paper's own, under the objective and the bounds of its study. The table has the paper's
-/// row, with the E1max that it prints, and ours.
+/// Re-optimises each row of Table 2 from the paper's design, under the objective and the bounds of its study. The table has the paper's
+/// row, with its printed E1max, and the re-optimised one.
 ///
 /// # Errors
 /// A study is wrong, nothing can be computed, or the results cannot be written.
@@ -47,7 +47,7 @@ pub fn table2(request: &Request, watch: &dyn Observer) -> Result<Done<Designs>, 
             };
             watch.log(&format!("\n{damper}: re-optimised from {start}"))?;
             let optimum = searches.tune(study, "")?;
-            let again = Row::of_optimum("re-optimised", damper, study, &optimum);
+            let reoptimised = Row::of_optimum("re-optimised", damper, study, &optimum);
             let settings = study.solver.settings();
             let paper = study.goal().evaluate(&study.scene, &settings, f64::INFINITY)?;
             let certificate = judge(study)?;
@@ -56,15 +56,15 @@ pub fn table2(request: &Request, watch: &dyn Observer) -> Result<Done<Designs>, 
                 found: study
                     .scene
                     .damper
-                    .map_or(again.found, |damper| TunedDamper::of(&damper, study.varied())),
+                    .map_or(reoptimised.found, |damper| TunedDamper::of(&damper, study.varied())),
                 printed: printed.map(Positive::get),
                 e1_max: paper.value,
                 verdict: certificate.verdict(),
                 reason: certificate.reason().to_owned(),
                 needs: Largest::of(study, &study.scene),
-                ..again.clone()
+                ..reoptimised.clone()
             };
-            table.extend([paper, again]);
+            table.extend([paper, reoptimised]);
         }
         let Searches { results: parts, infeasible, .. } = searches;
         let table = Designs { column: "origin", rows: table, infeasible };

@@ -1,6 +1,5 @@
 //! `optimize`: from a study to a tuned damper, its log and its figures.
 
-mod again;
 pub(crate) mod band;
 mod choice;
 pub(crate) mod descent;
@@ -11,6 +10,7 @@ pub mod merge;
 pub mod objective;
 mod optimum;
 pub(crate) mod pictures;
+mod recompute;
 mod refine;
 mod report;
 mod surf;
@@ -40,13 +40,13 @@ pub static KIND: Kind = Kind {
     answer: OPTIMUM,
     input: resolved::ONE,
     rows: &[
-        (log::GRID, again::grid),
-        (log::LOG, again::search),
-        (log::STARTS, again::search),
-        (log::BASINS, again::search),
-        (log::BAND, again::band),
+        (log::GRID, recompute::grid),
+        (log::LOG, recompute::search),
+        (log::STARTS, recompute::search),
+        (log::BASINS, recompute::search),
+        (log::BAND, recompute::band),
     ],
-    whole: &[(OPTIMUM, again::optimum), (certify::FILE, again::certificate)],
+    whole: &[(OPTIMUM, recompute::optimum), (certify::FILE, recompute::certificate)],
     derived: &[report::FILE, "fminsearch.txt", "surf-*.svg", "convergence.svg", "band.svg"],
 };
 
@@ -58,7 +58,7 @@ pub fn tune(request: &Request, watch: &dyn Observer) -> Result<Done<Optimum>, Er
     tune_study(&retune_study::read(&request.study)?, request, watch)
 }
 
-/// Tunes the damper of a study that is at hand; `request.study` is what its results are said to be made of.
+/// Tunes the damper of a study in memory; the results name `request.study` as their source.
 pub fn tune_study(study: &Study, request: &Request, watch: &dyn Observer) -> Result<Done<Optimum>, Error> {
     let search = searched(study)?;
     run(study, request, watch, |results| tuned(study, &search, results, watch))
@@ -80,7 +80,7 @@ pub fn optimize(
     job.make(watch, |results| tuned(study, &search, results, watch))
 }
 
-/// Does a search with `work` as a whole job. Results that were finished before are checked for their limits.
+/// Runs `work` as a whole job. If the results were finished before, only checks that their design keeps its limits.
 fn run(
     study: &Study,
     request: &Request,
@@ -108,7 +108,7 @@ fn searched(study: &Study) -> Result<Search, Error> {
     study.search().map_err(Error::rule(study))
 }
 
-/// Searches, writes, and discards what cannot be computed: only work that could not be written can be resumed later.
+/// Searches and writes the results. On an error the work is discarded, unless it could not be written: only then can it be resumed later.
 fn tuned(
     study: &Study,
     search: &Search,
@@ -132,7 +132,7 @@ fn search_and_write(task: &Task, results: &Directory) -> Result<Optimum, Error> 
     let on_grid = on_grid.len();
     let mut refined = refine::refine(task, &starts, results)?;
     descent::finish(task, &mut refined)?;
-    let (measured_at, valleys) = descent::lowest_of_valleys(task, &mut refined)?;
+    let (measured_at, valleys) = descent::probe_valleys(task, &mut refined)?;
     results.journal().check()?;
     let (certificate, passed_over) = choice::choose(study, &mut refined, watch)?;
     refine::write_winner(study, &refined, results)?;

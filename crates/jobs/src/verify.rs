@@ -1,12 +1,11 @@
-//! `verify`: results are compared with those that their study gives. Every file is compared with the manifest; by the lists of the jobs
-//! a sample of the rows is run again and compared to the last bit, certificates are made again. Parts that cannot be checked are
-//! reported.
+//! `verify`: compares results with what their study gives. Every file is compared with the manifest; by the lists of the jobs a sample of
+//! the rows is recomputed and compared to the last bit, and certificates are recomputed. Parts that cannot be checked are reported.
 
 mod report;
 
-use crate::again::{Made, text};
 use crate::artefact::{Content, Kind, is_named};
 use crate::parts::PARTS;
+use crate::recompute::{Recomputed, text};
 use crate::{
     Error, Observer, branches, certify, design, fronts, losses, methods, paper, resolved, retention, sweep,
     table2, tune,
@@ -19,8 +18,8 @@ use retune_study::counted;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// Checks a directory of results, and those in it, and reports of each file whether it holds. Of each table `sample` rows are run
-/// again; numbers that differ by at most `within` of their size hold.
+/// Checks a directory of results and those below it, and reports whether each file holds. Of each table `sample` rows are recomputed;
+/// numbers hold if their relative difference is at most `within`.
 ///
 /// # Errors
 /// There are no results, they do not hold, or something cannot be checked.
@@ -57,14 +56,14 @@ static KINDS: [&Kind; 10] = [
     &paper::KIND,
     &design::KIND,
 ];
-/// Those of the comparison of methods, whose files have names that say little: only where their manifest names them.
+/// The comparisons of methods: their file names are generic, so they apply only where the manifest names their command.
 static COMPARISONS: [&Kind; 2] = [&methods::ACCURACY, &methods::STABILITY];
 
-/// Those that make searches, each in a directory below, whose manifest names their command.
+/// The kinds that make searches, each in a directory below; the manifest of a search names their command.
 static SEARCHING: [&Kind; 6] =
     [&table2::KIND, &losses::KIND, &retention::KIND, &fronts::KIND, &paper::KIND, &design::KIND];
 
-/// Checks the results in one directory: each file against the manifest, then the contents of each against a computation.
+/// Checks the results in one directory: each file against the manifest, then its contents by recomputing them.
 fn check(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), Error> {
     if !is_result(place) {
         let (names, links) = names(place)?;
@@ -85,8 +84,10 @@ fn check(place: &Path, most: usize, report: &mut Report<'_>) -> Result<(), Error
             Content::Rows(source) => source(place, name)
                 .and_then(|source| report.check_rows(&place.join(name), name, &source, most)),
             Content::Whole(made) => made(place, name).and_then(|made| match made {
-                Made::Of { what, said, again } => report.compare(name, what, &said, &again),
-                Made::Not(why) => report.fail(name, &why),
+                Recomputed::Part { what, stored, recomputed } => {
+                    report.compare(name, what, &stored, &recomputed)
+                }
+                Recomputed::Failed(why) => report.fail(name, &why),
             }),
         };
         match done {
@@ -126,7 +127,7 @@ fn is_result(place: &Path) -> bool {
     [manifest::NAME, resolved::ONE].iter().any(|name| place.join(name).exists())
 }
 
-/// A directory, if there are files in it, and those below with files, sorted. No link is followed.
+/// Collects a directory and those below it that contain files, sorted. No link is followed.
 fn collect(path: &Path, places: &mut Vec<PathBuf>) -> std::io::Result<()> {
     let mut inner = Vec::new();
     for entry in std::fs::read_dir(path)? {
@@ -221,7 +222,7 @@ fn compare_with_manifest(place: &Path, there: &[String], report: &mut Report<'_>
     Ok(())
 }
 
-/// What a manifest says of the results beside their files and its input, and is not so.
+/// False statements of a manifest on the results, apart from their files and input.
 fn statements(place: &Path, input: &str, manifest: &Manifest) -> Vec<String> {
     let mut problems = Vec::new();
     let command = &manifest.made_by.command;
@@ -240,19 +241,19 @@ fn statements(place: &Path, input: &str, manifest: &Manifest) -> Vec<String> {
         dampers.map_or_else(|| vec![&read], |all| all.iter().map(|damper| &damper["study"]).collect());
     let first = studies.first().map_or(&Value::Null, |study| &study["solver"]);
     let common = if studies.iter().all(|study| study["solver"] == *first) { first } else { &Value::Null };
-    // A comparison of methods has none.
+    // A comparison of methods has no solver.
     if manifest.solver.as_ref().is_some_and(|solver| serde_json::json!(solver) != *common) {
         problems.push(format!("{}, solver: {input} has another", manifest::NAME));
     }
     problems
 }
 
-/// Whether a file is not a result: a lock, or a hidden file of an editor.
+/// Whether a file is hidden and so no result: a lock, or a file of an editor.
 fn is_hidden(path: &Path) -> bool {
     path.file_name().is_none_or(|name| name.to_string_lossy().starts_with('.'))
 }
 
-/// The names of the files in a directory but the manifest, sorted; and those of the symbolic links.
+/// The names of the files in a directory without the manifest, and of its symbolic links, both sorted.
 fn names(place: &Path) -> Result<(Vec<String>, Vec<String>), Error> {
     let refuse = |source| retune_store::Error::Input { path: place.to_owned(), source };
     let (mut names, mut links) = (Vec::new(), Vec::new());

@@ -1,4 +1,4 @@
-//! The figures of `branches`: E1max of all motions along the parameter, stable and unstable, with the bifurcations, below it the stroke; and
+//! The figures of `branches`: E1max of all stable and unstable motions along the parameter, with the bifurcations; the stroke below it; and
 //! the basins.
 
 use crate::branches::motions::{Motions, energy};
@@ -93,8 +93,8 @@ fn chart(motions: &Motions, label: &str, value: fn(&Orbit) -> f64, is_first: boo
     layers.push(Layer::Marks { points: rest, mark: REST });
     for branch in branches {
         for kind in EventKind::ALL.into_iter().rev() {
-            let own = branch.events.iter().filter(|event| event.kind == kind).take(MOST);
-            let points = own.map(|event| (event.orbit.value, value(&event.orbit))).collect();
+            let events = branch.events.iter().filter(|event| event.kind == kind).take(MOST);
+            let points = events.map(|event| (event.orbit.value, value(&event.orbit))).collect();
             layers.push(Layer::Marks { points, mark: mark(kind) });
         }
     }
@@ -116,7 +116,7 @@ fn line(branch: &Branch, value: fn(&Orbit) -> f64, stable: bool) -> Layer {
     Layer::Line { points, stroke: if stable { STABLE } else { UNSTABLE } }
 }
 
-/// The basins: the motion on which each start of a plane ends, in a colour of its own.
+/// The basins: each start in a plane, coloured by the motion on which it ends.
 pub fn basins(motions: &Motions, basins: &Basins) -> String {
     let place = motions.at(basins.sample.value, 6);
     let side = |label: &str, side: usize| Nodes {

@@ -1,8 +1,8 @@
-//! What `branches` finds, and how much more force a damper bears before a motion appears that runs from rest do not lead to.
+//! The result of `branches`, and the margin of the force: how far it can rise before a motion appears that no run from rest leads to.
 //!
-//! For this margin the force is raised in steps until a branch of such motions is found. Each of them vanishes at a fold as the force falls
-//! again; the least force of these folds over ω is where the branch is born, as an isola. Just below, the motions are looked for again, for
-//! another may be born earlier.
+//! To find the margin, the force is raised in steps until a branch of such motions is found. As the force falls again, each of them
+//! vanishes at a fold; the branch is born, as an isola, at the least force of these folds over ω. The search is repeated just below, since
+//! another isola may be born earlier.
 
 use crate::Error;
 use crate::certify::periodic;
@@ -11,12 +11,12 @@ use retune_dynamics::periodic::{Attractor, Basins, Branch, Branches, Onset, Orbi
 use retune_model::{Measure, Parameter};
 use retune_study::{Study, rounded, short};
 
-/// The forces at which motions are looked for, as multiples of the scene's own.
+/// The forces at which motions are searched for, as multiples of the scene's force.
 const STEPS: [f64; 10] = [1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2.0];
-/// How far below a birth another is looked for, as a share of the force, and how often.
+/// Force of the repeated search as a share of the birth force, and the largest number of repetitions.
 const BELOW: f64 = 0.995;
 const ROUNDS: usize = 4;
-/// A branch counts whose largest energy is by this factor above that of all motions that runs from rest lead to.
+/// A branch counts if its largest energy exceeds that of all branches reached from rest by this factor.
 const NOTABLE: f64 = 1.05;
 
 /// The motions of a study along a parameter.
@@ -26,27 +26,27 @@ pub struct Motions {
     pub study: Study,
     /// The motions.
     pub branches: Branches,
-    /// The stable motion with the largest E1max of each branch; none of a branch without stable motions.
+    /// The stable motion with the largest E1max of each branch; none for a branch without stable motions.
     pub largest: Vec<Option<Orbit>>,
-    /// How much more force it bears, where that was asked for.
+    /// The margin of the force, if requested.
     pub margin: Option<Margin>,
-    /// Where starts in a plane end, where that was asked for.
+    /// The basins of starts in a plane, if requested.
     pub basins: Option<Basins>,
 }
 
 /// Where the first isola begins.
 #[derive(Clone, Debug)]
 pub struct Margin {
-    /// The scene's own force, N.
+    /// The amplitude of the scene's forcing, in its unit.
     pub own: f64,
-    /// Where it is born as the force rises; none up to the largest that was tried.
+    /// The birth of the isola as the amplitude rises; none up to the largest that was tried.
     pub birth: Option<Onset>,
     /// The largest that was tried.
     pub tried: f64,
 }
 
 impl Motions {
-    /// Of a study.
+    /// The motions of a study, without margin and basins.
     pub(crate) fn new(study: Study, branches: Branches) -> Self {
         let largest = branches.largest_of_each(Measure::Energy);
         Self { study, largest, branches, margin: None, basins: None }
@@ -56,7 +56,7 @@ impl Motions {
         self.branches.plan.parameter
     }
 
-    /// Where, to some digits: `omega = 5.98 rad/s`.
+    /// A value of the parameter in words: `omega = 5.98 rad/s`.
     pub(super) fn at(&self, value: f64, digits: usize) -> String {
         let words = format!("{} = {} {}", self.over().symbol(), rounded(value, digits), self.over().unit());
         words.trim_end().to_owned()
@@ -67,7 +67,8 @@ impl Motions {
         format!("{}; Retune {}", self.study.name(), env!("CARGO_PKG_VERSION"))
     }
 
-    /// The branches that no run from rest leads to, with stable motions of much more energy than any on branches that runs from rest do.
+    /// The branches that no run from rest leads to, with a stable motion of more than [`NOTABLE`] times the energy of any branch reached
+    /// from rest.
     fn others(&self) -> impl Iterator<Item = &Branch> {
         let energy = |i: usize| self.largest[i].as_ref().map_or(0.0, energy);
         let from_rest = |i: &usize| self.branches.is_reached_from_rest(*i);
@@ -77,10 +78,10 @@ impl Motions {
     }
 }
 
-/// What some runs at a sample settle on.
+/// The outcome of runs at a sample.
 pub(super) struct Settled<'a> {
     pub sample: &'a Sample,
-    /// The periodic motion; none of irregular ones.
+    /// The periodic motion; none for irregular ones.
     pub on: Option<&'a Orbit>,
     pub branch: Option<usize>,
     pub starts: usize,
@@ -90,7 +91,7 @@ pub(super) struct Settled<'a> {
 }
 
 impl<'a> Settled<'a> {
-    /// Each periodic motion of a sample; then what is irregular, if anything is.
+    /// The outcomes of a sample: each periodic motion, then all irregular runs together, if any.
     pub fn of(sample: &'a Sample) -> impl Iterator<Item = Self> {
         let periodic = sample.attractors.iter().map(move |one| {
             let Attractor { branch, orbit, starts, from_rest } = one;
@@ -128,8 +129,8 @@ pub(super) fn joule(value: f64) -> String {
     rounded(value, 5)
 }
 
-/// The margin of the force. None where the answer is not along ω, or nothing has an amplitude. Where there is such a motion already, nothing above the own force is
-/// tried.
+/// The margin of the force; none unless the parameter is ω and the forcing has an amplitude. If such a motion exists at the scene's force
+/// already, no larger force is tried.
 pub fn margin(motions: &Motions) -> Result<Option<Margin>, Error> {
     let plan = motions.branches.plan;
     let amplitude = motions.study.scene.forcing.amplitude().map(|(amplitude, own)| (amplitude, own.get()));

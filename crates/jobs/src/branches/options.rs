@@ -1,4 +1,4 @@
-//! What is asked for: the parameter, its range, how many runs are started.
+//! The options of `branches`: the parameter, its range, the numbers of runs.
 
 use crate::Error;
 use crate::describe::forced;
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 /// Most samples, and most starts at each.
 const MOST: usize = 10_000;
 
-/// What is asked for, as it is typed.
+/// The options as typed.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// The parameter.
@@ -23,13 +23,13 @@ pub struct Options {
     pub samples: usize,
     /// Number of other starts for each, over the whole range and the states that the force can reach.
     pub starts: usize,
-    /// Runs at each from whose states Newton's iteration is led to motions other than those known.
+    /// Number of runs at each value from whose states deflated Newton iterations look for further motions.
     pub apart: usize,
     /// Number of values at which a run from rest alone is followed as well.
     pub fine: usize,
     /// Whether to look for the force at which an isola begins.
     pub margin: bool,
-    /// The value of the parameter at which starts in a plane are followed; none unless asked for.
+    /// The value of the parameter at which the basins are computed; by default none are.
     pub basins: Option<String>,
 }
 
@@ -119,10 +119,10 @@ fn default_range(over: Parameter, study: &Study) -> Result<[f64; 2], Error> {
         return Ok([band.from, band.to]);
     }
     match over.of(&study.scene) {
-        Some(own) => {
-            let high = 1.25 * own;
+        Some(nominal) => {
+            let high = 1.25 * nominal;
             // No restitution is above 1.
-            Ok([0.8 * own, if over == Parameter::Restitution { high.min(1.0) } else { high }])
+            Ok([0.8 * nominal, if over == Parameter::Restitution { high.min(1.0) } else { high }])
         }
         None => Err(Error::Argument {
             option: "--over",

@@ -1,4 +1,4 @@
-//! The page of `branches`, and its answer in words. Every number on it is one of the tables beside it.
+//! The page of `branches`, and its answer in words. Every number on it comes from the tables beside it.
 
 use crate::branches::draw;
 use crate::branches::motions::{Margin, Motions, Settled, energy, joule, kind, most_irregular, settled};
@@ -67,7 +67,7 @@ fn plan_words(motions: &Motions) -> String {
     )
 }
 
-/// The answer: one line for each thing to know.
+/// The answer: one line for each finding.
 pub fn answer(motions: &Motions) -> Vec<String> {
     let (all, [from, to]) = (&motions.branches, motions.branches.plan.range);
     let (symbol, unit) = (motions.over().symbol(), motions.over().unit());
@@ -183,7 +183,7 @@ fn branches(motions: &Motions) -> Block {
     Block::table(words, head, rows.collect())
 }
 
-/// The events, those of stable motions first.
+/// The events at stable motions, and all folds.
 fn events(motions: &Motions) -> Block {
     let matters = |branch: &Branch, place: usize| {
         let near = [place.checked_sub(1), Some(place + 1)].into_iter().flatten();
@@ -220,7 +220,7 @@ fn starts(motions: &Motions) -> String {
     )
 }
 
-/// What runs settle on, where it is a motion that no run from rest leads to, or none that repeats.
+/// The outcomes of runs that settle on a motion which no run from rest leads to, or on no periodic motion.
 fn attractors(motions: &Motions) -> Block {
     let is_usual =
         |one: &Settled| one.branch.is_some_and(|branch| motions.branches.is_reached_from_rest(branch));
@@ -246,35 +246,35 @@ fn attractors(motions: &Motions) -> Block {
     Block::table(words, head, rows)
 }
 
-/// The parameters of which one is told how far it can be changed before a motion vanishes, but for [`Parameter::AMPLITUDES`]: the gaps, the
-/// dashpot, the spring.
+/// The parameters for which the page says how far each can be changed before a motion vanishes, besides [`Parameter::AMPLITUDES`]: the
+/// gaps, the dashpot, the spring.
 const TRIED: [Parameter; 4] = [Parameter::D, Parameter::C, Parameter::C2, Parameter::K2];
-/// How far a parameter is changed, as a share of its value.
+/// Range over which a parameter is changed, as multiples of its value.
 const REACH: [f64; 2] = [0.3, 3.0];
 
-/// What removes a motion of a branch: how far a parameter can be changed before it vanishes at a fold, in words: "D above 0.636 m (28.4 mm
-/// more)". None where no fold was found within reach.
+/// The change of a parameter that removes a motion, up to the fold where it vanishes, in words: "D above 0.636 m (28.4 mm more)". None if
+/// there is no fold in range.
 fn remedy(branch: &Branch, orbit: &Orbit, parameter: Parameter) -> Option<String> {
-    let own = parameter.of(&branch.shooting.forced.scene).filter(|own| *own > 0.0)?;
-    let shooting = branch.shooting.along(orbit.value, parameter, own).ok()?;
-    let seed = shooting.correct_at_value(&shooting.unknowns(&orbit.states, own))?;
-    let along = trace(&shooting, &seed, REACH.map(|share| share * own), &|| true)?;
-    let seed = along.points.iter().position(|point| point.value == own)?;
+    let nominal = parameter.of(&branch.shooting.forced.scene).filter(|nominal| *nominal > 0.0)?;
+    let shooting = branch.shooting.along(orbit.value, parameter, nominal).ok()?;
+    let seed = shooting.correct_at_value(&shooting.unknowns(&orbit.states, nominal))?;
+    let along = trace(&shooting, &seed, REACH.map(|share| share * nominal), &|| true)?;
+    let seed = along.points.iter().position(|point| point.value == nominal)?;
     let folds = || along.events.iter().filter(|event| event.kind == EventKind::Fold);
-    // Traced towards larger values first. A closed branch comes back from the other side.
+    // The branch is traced towards larger values first; a closed branch comes back from the other side.
     let closed = along.ends == [End::Closed; 2];
     let below = folds().rfind(|event| event.place < seed || closed).map(|event| event.orbit.value);
     let above = folds().find(|event| event.place > seed).map(|event| event.orbit.value);
     let way = |end: f64, side: &str, more: &str| {
-        let (unit, change) = (parameter.unit(), (end - own).abs());
+        let (unit, change) = (parameter.unit(), (end - nominal).abs());
         let change = match unit {
             "m" => format!("{:.1} mm", 1e3 * change),
             _ => format!("{} {unit}", rounded(change, 3)),
         };
         format!("{} {side} {} {unit} ({change} {more})", parameter.symbol(), rounded(end, 4))
     };
-    let above = above.filter(|end| *end > own).map(|end| way(end, "above", "more"));
-    let below = below.filter(|end| *end < own).map(|end| way(end, "below", "less"));
+    let above = above.filter(|end| *end > nominal).map(|end| way(end, "above", "more"));
+    let below = below.filter(|end| *end < nominal).map(|end| way(end, "below", "less"));
     let ways: Vec<String> = above.into_iter().chain(below).collect();
     (!ways.is_empty()).then(|| ways.join(" or "))
 }
@@ -292,25 +292,25 @@ fn basins(motions: &Motions, basins: &Basins) -> Vec<Block> {
     let others = basins.ends.contains(&None).then_some(None);
     let rows = known.chain(others).map(|motion| ends_on(motions, basins, motion)).collect();
     let head = ["motion", "branch", "what it is", "E1max, J", "starts", "least E1 of them, J"];
-    let said = format!("Where the starts of the plane end; {STARTS} has each.");
+    let heading = format!("Where the starts of the plane end; {STARTS} has each.");
     let caption = format!("The motion on which each start ends, at {place}");
     let figure = Block::figure("basins.svg", draw::basins(motions, basins), caption);
-    vec![Block::words(words), figure, Block::table(said, head, rows)]
+    vec![Block::words(words), figure, Block::table(heading, head, rows)]
 }
 
 /// The starts that end on a motion, or on none of those that are known.
 fn ends_on(motions: &Motions, basins: &Basins, motion: Option<usize>) -> Vec<String> {
     let one = motion.map(|number| &basins.sample.attractors[number]);
-    let own = || basins.starts().filter(|(_, end)| *end == motion).map(|(start, _)| start);
+    let starts = || basins.starts().filter(|(_, end)| *end == motion).map(|(start, _)| start);
     let bare = Bare::new(&motions.study.scene.primary, &motions.study.scene.forcing);
-    let push = own().map(|[x1, v1]| bare.primary_energy(x1, v1)).fold(f64::INFINITY, f64::min);
+    let push = starts().map(|[x1, v1]| bare.primary_energy(x1, v1)).fold(f64::INFINITY, f64::min);
     let or_none = |text: Option<String>| text.unwrap_or_else(|| "-".to_owned());
     vec![
         or_none(motion.map(|number| number.to_string())),
         or_none(one.and_then(|one| one.branch).map(|branch| branch.to_string())),
         one.map_or("irregular, or none of these".to_owned(), |one| kind(&one.orbit)),
         or_none(one.map(|one| joule(energy(&one.orbit)))),
-        format!("{} %", rounded(100.0 * own().count() as f64 / basins.ends.len() as f64, 3)),
+        format!("{} %", rounded(100.0 * starts().count() as f64 / basins.ends.len() as f64, 3)),
         or_none(push.is_finite().then(|| rounded(push, 3))),
     ]
 }

@@ -1,10 +1,10 @@
-//! The tables of `branches`, their rows computed again, and its answer as data.
+//! The tables of `branches`, the functions that recompute their rows, and the answer as data.
 
 use crate::Error;
-use crate::again::{Row, Source, broken, each_row};
 use crate::branches::motions::{Motions, Settled, energy, settled};
 use crate::branches::options::{plan_json, plan_of};
 use crate::columns::{self, STATE};
+use crate::recompute::{Row, Source, broken, each_row};
 use crate::resolved::{Resolved, SEVERAL};
 use retune_dynamics::periodic::branches::{Plan, sample};
 use retune_dynamics::periodic::forced::settings_of;
@@ -22,7 +22,7 @@ use std::path::Path;
 pub const BRANCHES: &str = "branches.csv";
 /// A row for each event.
 pub const BIFURCATIONS: &str = "bifurcations.csv";
-/// A row for each motion on which runs settle, at each sample.
+/// A row for each motion on which runs settle at each sample.
 pub const ATTRACTORS: &str = "attractors.csv";
 /// The states from which the motions of the branches are followed.
 pub const STATES: &str = "states.csv";
@@ -149,16 +149,17 @@ pub fn summary(motions: &Motions) -> Value {
     })
 }
 
-/// The rows of one of the tables, computed again: motions from their states, what runs settle on, where starts end.
+/// Recomputes rows of one of the tables: motions from their states, the outcomes of runs, the ends of starts.
 ///
 /// # Errors
 /// The input of the results cannot be read.
-pub(super) fn again(place: &Path, name: &str) -> Result<Source, Error> {
-    let (said, study) = Resolved::one(place)?;
+pub(super) fn recompute(place: &Path, name: &str) -> Result<Source, Error> {
+    let (plan_values, study) = Resolved::one(place)?;
     let refuse = |problem: &str| broken(place, SEVERAL, problem);
-    let plan = plan_of(&said).ok_or_else(|| refuse("its plan cannot be read"))?;
+    let plan = plan_of(&plan_values).ok_or_else(|| refuse("its plan cannot be read"))?;
     if name == STARTS {
-        let value = said["basins"].as_f64().ok_or_else(|| refuse("`basins` is no number in its plan"))?;
+        let value =
+            plan_values["basins"].as_f64().ok_or_else(|| refuse("`basins` is no number in its plan"))?;
         let plane = Plane::new(&study.scene, plan, &study.solver.settings(), value, None)?;
         return Ok(Source::new(move |row| Some(vec![("motion".to_owned(), start(&plane, row))])));
     }
@@ -175,7 +176,7 @@ pub(super) fn again(place: &Path, name: &str) -> Result<Source, Error> {
     }))
 }
 
-/// The number of the motion on which a start of the plane ends; NaN of none.
+/// The number of the motion on which a start of the plane ends; NaN for none of them, infinite where the run fails.
 fn start(plane: &Plane, row: Row) -> f64 {
     let end = plane.end(["x1", "v1"].map(|name| row.number(name)));
     end.map_or(f64::INFINITY, |end| end.map_or(f64::NAN, |number| number as f64))
@@ -189,19 +190,19 @@ fn orbit(study: &Study, plan: Plan, states: &[[f64; 4]], row: Row) -> Option<f64
     Some(found.map_or(f64::INFINITY, |seen| seen.largest(Measure::Energy)))
 }
 
-/// E1max of what runs settle on.
+/// E1max of the motion on which runs settle.
 fn attractor(study: &Study, plan: Plan, row: Row) -> Option<f64> {
-    // Beside that from rest.
-    let others = row.text("starts_of").parse::<usize>().ok()?.checked_sub(1)?;
-    let (plan, value) = (Plan { starts: others, ..plan }, row.number(plan.parameter.symbol()));
+    // The start from rest is not counted here.
+    let other_starts = row.text("starts_of").parse::<usize>().ok()?.checked_sub(1)?;
+    let (plan, value) = (Plan { starts: other_starts, ..plan }, row.number(plan.parameter.symbol()));
     let found = sample(&study.scene, plan, &study.solver.settings(), value, row.text("start").parse().ok());
     let mut all = found.iter().flat_map(Settled::of);
-    let own = all.find(|Settled { on, starts, .. }| match on {
+    let matching = all.find(|Settled { on, starts, .. }| match on {
         None => row.text("motion") != "periodic",
         Some(orbit) => {
-            let own = [orbit.seen.impacts.clone(), starts.to_string(), orbit.periods.to_string()];
-            own == ["impacts", "starts", "periods"].map(|name| row.text(name))
+            let fields = [orbit.seen.impacts.clone(), starts.to_string(), orbit.periods.to_string()];
+            fields == ["impacts", "starts", "periods"].map(|name| row.text(name))
         }
     });
-    Some(own.map_or(f64::INFINITY, |own| own.energy))
+    Some(matching.map_or(f64::INFINITY, |matching| matching.energy))
 }

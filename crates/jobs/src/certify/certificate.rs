@@ -22,7 +22,7 @@ use retune_optim::Evaluation;
 use retune_study::Study;
 use serde::Serialize;
 
-/// What the samples of a study may miss without a word, as a share of the value.
+/// Share of the value that the samples of a study may miss without a warning.
 const MISSED_PEAK: f64 = 0.01;
 
 /// A certificate. SI units.
@@ -36,7 +36,7 @@ pub struct Certificate {
     #[serde(flatten)]
     pub(crate) judged: Judged,
     pub(crate) rule: String,
-    /// The value between other walls, where the damper touches its own; beside the verdict, which does not depend on it.
+    /// The value with other walls, where the damper touches its walls; the verdict does not depend on it.
     #[serde(flatten)]
     pub(crate) walls: Option<Walls>,
     /// The value under other records, where the study has one.
@@ -46,7 +46,7 @@ pub struct Certificate {
     pub(crate) measured: Measured,
 }
 
-/// The short form that `optimum.json` has.
+/// The short form in `optimum.json`.
 #[derive(Debug, Serialize)]
 pub struct Short<'a> {
     verdict: Option<Verdict>,
@@ -96,7 +96,7 @@ impl Certificate {
         &self.judged.words
     }
 
-    /// How far the methods that could finish the worst run agree, and which could not.
+    /// How closely the methods that could finish the worst run agree, and which could not, in words.
     fn compared(&self) -> String {
         let (finished, not): (Vec<&Run>, Vec<&Run>) =
             self.measured.convergence.iter().partition(|run| run.is_finished());
@@ -108,19 +108,19 @@ impl Certificate {
         format!("{} methods and tolerances differ by {error_bar:.1e} {unit}{not}", finished.len())
     }
 
-    /// The force up to which no other motion has 5 % more, as a multiple of its own; infinite where there is no such motion to look for.
+    /// The largest force at which no other motion has 5 % more, as a multiple of the design's force; infinite without a margin.
     pub(crate) fn safe_to(&self) -> f64 {
         self.measured.margin.as_ref().map_or(f64::INFINITY, |margin| margin.safe_to)
     }
 
-    /// Whether no verdict is better and no margin larger.
+    /// Whether no design can have a better verdict or a larger margin.
     pub(crate) fn is_safest(&self) -> bool {
         let clear = self.measured.margin.as_ref().is_none_or(|margin| margin.other.is_none());
         self.judged.verdict == Some(Verdict::Robust) && clear
     }
 
-    /// Whether it has all measurements. One of [`judge`](crate::certify::judge) lacks the motions from other starts where the verdict was
-    /// decided without.
+    /// Whether it has all measurements: that of [`judge`](crate::certify::judge) lacks motions from other starts where they cannot change
+    /// the verdict.
     pub(crate) fn is_whole(&self) -> bool {
         matches!(self.judged.verdict, Some(Verdict::Robust | Verdict::FromRest | Verdict::Edge))
     }
@@ -136,7 +136,7 @@ impl Certificate {
         }
     }
 
-    /// What the samples of the study miss, in words, where it is more than 1 %.
+    /// The peak that the samples of the study miss, in words, if it is more than 1 % higher.
     pub(crate) fn missed_peak(&self) -> Option<String> {
         let finer = self.measured.finer.filter(|finer| *finer > (1.0 + MISSED_PEAK) * self.value.value)?;
         let quantity = self.value.quantity;

@@ -1,4 +1,4 @@
-//! The margin of a design: what is found at more force is followed back along the force, and along each parameter, to where it begins.
+//! The margin of a design: motions found at a larger force are followed back, along the force and along each parameter, to their onset.
 
 use super::certificate::{Margin, Other, ParameterError};
 use super::motions::{AtForce, NOTABLE, Place, with_force};
@@ -11,7 +11,8 @@ use retune_optim::Unusable;
 use retune_solver::Settings;
 use retune_study::Margins;
 
-/// How far forces are followed down, as a share of the own: below it, for where a motion begins says how a parameter moves that.
+/// Force down to which motions are followed, as a share of the design's force. It is below 1 because the shift of an onset with a parameter
+/// needs onsets below the design's force.
 const DOWN: f64 = 0.9;
 const PARAMETERS: [Parameter; 8] = [
     Parameter::K1,
@@ -25,8 +26,8 @@ const PARAMETERS: [Parameter; 8] = [
 ];
 
 impl Place {
-    /// Follows the motions that have much more at a larger force back: lowers the margin to where the first of them begins, and gives those that are
-    /// there at the own force.
+    /// Follows the motions with notably larger values at a larger force back to their onsets. Lowers the margin to the first onset, and
+    /// returns the motions that exist at the design's force.
     fn lower(
         &self,
         found: &AtForce,
@@ -37,21 +38,22 @@ impl Place {
         let Some((amplitude, own)) = self.scene.forcing.amplitude() else { return Ok(Vec::new()) };
         let own = own.get();
         let errors = 0.01 * margin.needed_percent;
-        // As a power of the force between the two that are known.
+        // The value from rest, as a power of the force through the two known points.
         let power = (found.from_rest / self.from_rest).ln() / found.times.ln();
-        let much = move |times: f64| NOTABLE * self.from_rest * times.powf(power);
-        let counts = |orbit: &Orbit| orbit.seen.largest(measure) > much(orbit.value / own);
+        let notable = move |times: f64| NOTABLE * self.from_rest * times.powf(power);
+        let counts = |orbit: &Orbit| orbit.seen.largest(measure) > notable(orbit.value / own);
         let k1 = self.scene.primary.stiffness.get();
         let largest = found.branches.largest(measure);
-        if let Some(one) = largest.filter(|one| one.orbit.is_none() && one.value > much(found.times)) {
-            // It cannot be followed: it may begin anywhere above the force that was looked at before.
+        if let Some(one) = largest.filter(|one| one.orbit.is_none() && one.value > notable(found.times)) {
+            // An irregular motion cannot be followed: its onset may be anywhere above the previous force.
             let before =
                 margin.forces.iter().copied().filter(|times| *times < found.times).fold(1.0, f64::max);
             margin.lower_to(before, Other { k1: Some(k1), reached: None, ..Other::new(measure, &one) });
         }
         let scene = with_force(&self.scene, found.times)?;
         let shooting = equations(&scene, &self.plan(), settings)?;
-        let seeds = found.branches.seeds(&shooting, |orbit| orbit.seen.largest(measure) > much(found.times));
+        let seeds =
+            found.branches.seeds(&shooting, |orbit| orbit.seen.largest(measure) > notable(found.times));
         let other = |onset: &Onset| Other {
             value: Amount::new(measure, onset.orbit.seen.largest(measure)),
             omega: onset.omega,
@@ -82,7 +84,7 @@ impl Place {
                     Some((*error, onset))
                 };
                 for (error, moved) in [-errors, errors].iter().filter_map(at) {
-                    // The force at which it begins falls all but evenly over so small an error.
+                    // The onset force varies almost linearly over so small an error.
                     let share = (onset.value - own) / (onset.value - moved.value);
                     margin.add(parameter.symbol(), 100.0 * error * share, other(&moved));
                 }
@@ -93,7 +95,7 @@ impl Place {
 }
 
 impl Margin {
-    /// Before any motion is found.
+    /// The initial margin, before any motion is found.
     pub(super) fn new(needed: &Margins, forcing: &Forcing) -> Self {
         Self {
             needed_force: 1.0 + needed.force,
@@ -106,7 +108,8 @@ impl Margin {
         }
     }
 
-    /// Lowers it by what is found at more force; gives the motions that are there at the own force, each with the number of its place.
+    /// Lowers the margin to the onsets of motions found at a larger force; returns the motions that exist at the design's force, each with
+    /// the index of its place.
     pub(super) fn lower(
         &mut self,
         places: &[Place],
@@ -121,14 +124,14 @@ impl Margin {
         Ok(there)
     }
 
-    /// A motion that begins at a multiple of the force.
+    /// Records a motion whose onset is at `times` the force.
     fn lower_to(&mut self, times: f64, other: Other) {
         if times < self.safe_to {
             (self.safe_to, self.other) = (times, Some(other));
         }
     }
 
-    /// A motion that an error of a parameter brings; the least error of each is kept.
+    /// Records a motion that an error of a parameter brings; the smallest error of each parameter is kept.
     fn add(&mut self, parameter: &'static str, percent: f64, other: Other) {
         let known = self.parameters.iter().position(|one| one.parameter == parameter);
         let one = ParameterError { parameter, percent, other };

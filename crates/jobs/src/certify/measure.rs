@@ -16,12 +16,12 @@ use retune_optim::{
 use retune_solver::{Ask, Method, Settings, Settle, Window, extremes, settled};
 use retune_study::Study;
 
-/// Relative errors of a parameter that its sensitivity is read from.
+/// Relative errors of a parameter at which its sensitivity is evaluated.
 const ERRORS: [f64; 6] = [-0.01, -0.005, -0.0025, 0.0025, 0.005, 0.01];
 /// The neighbourhood: designs whose k1, k2, c2, D and C are off by at most a thousandth.
 const NEIGHBOURS: Ensemble =
     Ensemble { members: 64, phases: false, errors: 1e-3, seed: 0, statistic: Statistic::Mean };
-/// The convergence study: the study's own method at three tolerances, and two methods that share nothing with it but the equations.
+/// The convergence study: the default method at three tolerances, and two methods that share nothing with it but the equations.
 const CONVERGENCE: [(Method, f64); 5] = [
     (Method::Hybrid, 1e-8),
     (Method::Hybrid, 1e-10),
@@ -29,28 +29,27 @@ const CONVERGENCE: [(Method, f64); 5] = [
     (Method::Dop853, 1e-12),
     (Method::Ode45, 1e-10),
 ];
-/// A displacement of the structure, m: the absolute tolerance of methods that step in time is in proportion to smaller ones, and that of this one
-/// for all larger ones.
+/// Displacement of the structure, m, below which the absolute tolerance of methods that step in time is reduced in proportion.
 const SMALL: f64 = 1e-3;
-/// The angle, rad, by which the force is turned between rigid walls, as a share of the tolerance that would stand there.
-const TURNED: f64 = 1e-3;
-/// Time over which methods that step in time follow a steady motion at least and at most, s; times of its slowest decay; and the criterion by which it
-/// has settled.
+/// Phase shift of the force between rigid walls, rad, per unit of the relative tolerance that it stands in for.
+const PHASE_SHIFT: f64 = 1e-3;
+/// For steady motions by methods that step in time: shortest and longest run, s; its length in times of the slowest decay; the criterion
+/// for settling.
 const LONG: [f64; 2] = [2000.0, 5e4];
 const DECAYS: f64 = 40.0;
 const STEADY: Settle = Settle { periods: 10, blocks: 3, tolerance: 1e-9 };
 
-/// Which designs are looked at from other starts than rest.
+/// Which designs are run from starts other than rest.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum OtherStarts {
     Always,
-    /// Those whose verdict may depend on it.
+    /// Those whose verdict may depend on them.
     WhereTheyDecide,
-    /// The same, from a few other starts, and at its own force alone.
+    /// Those whose verdict may depend on them, with few starts and at the design's force only.
     FewWhereTheyDecide,
 }
 
-/// The parameters that a built scene has with an error; a loss or a restitution where it has one.
+/// The parameters that are inexact in a built design.
 fn inexact() -> impl Iterator<Item = Parameter> {
     use Parameter::{C, C1, C2, D, K1, K2, Lambda, M1, M2, Omega, R, Restitution};
     let bodies = [M1, C1, K1, M2, K2, C2, D, C, R].into_iter();
@@ -120,7 +119,7 @@ pub(super) fn measure(study: &Study, damper: &Damper, others: OtherStarts) -> Re
     Ok(Certificate::new(study, damper, &own, measured))
 }
 
-/// The goal with more samples, if any of its bands of frequencies, or of its ranges of stiffnesses, is sampled.
+/// The goal with [`FINER`] times the samples of its frequency bands and stiffness ranges; none if nothing is sampled.
 fn finer(goal: &Goal) -> Option<Goal> {
     let (mut goal, mut any) = (goal.clone(), false);
     goal.objective.for_each_term(&mut |term| {
@@ -138,8 +137,8 @@ fn finer(goal: &Goal) -> Option<Goal> {
     any.then_some(goal)
 }
 
-/// The largest displacement of the structure as a share of [`SMALL`], at most 1: the absolute tolerance of methods that step in time is in
-/// proportion to it, or a motion of nanometres would be called unpredictable for their errors.
+/// The largest displacement of the structure as a share of [`SMALL`], at most 1. The absolute tolerance of methods that step in time is
+/// scaled by it; otherwise a motion of nanometres would count as unpredictable.
 fn smallness(scene: &Scene, window: Window, settings: &Settings) -> f64 {
     let ask = Ask { measure: Measure::Displacement, ..Ask::default() };
     let whole = Window { from: 0.0, ..window };
@@ -159,9 +158,10 @@ fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Ru
     let long = if decay > 0.0 { (DECAYS / decay).clamp(LONG[0], LONG[1]) } else { LONG[0] };
     let run = |&(method, rtol): &(Method, f64)| {
         let settings = Settings { method, rtol, atol: 0.01 * rtol * small, ..*settings };
-        // Between rigid walls there is no tolerance: the force is turned by as little, to tell whether the motion can be predicted.
-        let turned = if rigid { TURNED * rtol } else { 0.0 };
-        let ask = Ask { measure: quantity, phase: worst.phase + turned, ..Ask::default() };
+        // Between rigid walls there is no tolerance to vary: a tiny phase shift of the force shows instead whether the motion is
+        // predictable.
+        let phase_shift = if rigid { PHASE_SHIFT * rtol } else { 0.0 };
+        let ask = Ask { measure: quantity, phase: worst.phase + phase_shift, ..Ask::default() };
         if goal.objective.is_stationary() {
             let value = goal.evaluate(&worst.scene, &settings, f64::INFINITY)?.value;
             return Ok(Run { method, rtol, value: Amount::new(quantity, value) });
@@ -173,13 +173,13 @@ fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Ru
                 let term = goal.term(worst.term).cloned().unwrap_or_default();
                 let objective =
                     Objective { omega: None, k1: None, restitution: None, ensemble: None, ..term };
-                let own = Goal { objective, limits: Limits::default(), ..goal.clone() };
-                let value = own.evaluate(&worst.scene, &settings, f64::INFINITY)?.value;
+                let nominal = Goal { objective, limits: Limits::default(), ..goal.clone() };
+                let value = nominal.evaluate(&worst.scene, &settings, f64::INFINITY)?.value;
                 return Ok(Run { method, rtol, value: Amount::new(quantity, value) });
             }
             Response::Steady => settled(&worst.scene, Window { from: 0.0, to: long }, STEADY, &settings, ask),
         };
-        // Methods that step in time are not there for the stiffest scenes, nor for a motion that takes too long to become steady.
+        // Methods that step in time may fail on the stiffest scenes, or where the motion takes too long to become steady.
         let value = match found {
             Err(_) if method != Method::Hybrid => f64::INFINITY,
             Ok(found) if response == Response::Steady && !found.settled => f64::INFINITY,
@@ -187,14 +187,13 @@ fn convergence(worst: &Place, goal: &Goal, settings: &Settings) -> Result<Vec<Ru
         };
         Ok(Run { method, rtol, value: Amount::new(quantity, value) })
     };
-    // Motions are followed by the study's own method alone; of a stationary motion the tolerance is that of an integral.
-    let own = response == Response::Motions || goal.objective.is_stationary() || rigid;
-    let other = |method: Method| !own || method == Method::Hybrid;
+    // Only the default method follows motions and rigid walls; for a stationary motion the tolerance is that of an integral.
+    let default_only = response == Response::Motions || goal.objective.is_stationary() || rigid;
+    let other = |method: Method| !default_only || method == Method::Hybrid;
     CONVERGENCE.par_iter().filter(|(method, _)| other(*method)).map(run).collect()
 }
 
-/// The objective with each parameter a little off; parameters that are zero have no relative error. What was reached goes to
-/// `near`.
+/// The objective with each parameter slightly off; parameters that are zero have no relative error. The limited quantities go to `near`.
 fn sensitivities(
     study: &Study,
     goal: &Goal,
@@ -233,7 +232,7 @@ fn sensitivities(
     known.iter().zip(energies.chunks(ERRORS.len())).map(read).collect()
 }
 
-/// The objective of the neighbours. What they reach goes to `near`.
+/// The objective of the neighbours. Their limited quantities go to `near`.
 fn neighbourhood(
     scene: &Scene,
     outcome: impl Fn(&Scene) -> Outcome + Sync,
@@ -249,9 +248,9 @@ fn neighbourhood(
     Neighbourhood::new(NEIGHBOURS.errors, found.iter().map(|found| found.energy).collect())
 }
 
-/// The result of a scene.
+/// The evaluation of a scene.
 struct Outcome {
-    /// Infinite where there is none.
+    /// The value of the objective; infinite where it cannot be computed.
     energy: f64,
     reached: PerLimit<f64>,
 }

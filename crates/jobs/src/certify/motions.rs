@@ -1,4 +1,5 @@
-//! The motions of a design beside those from rest, over the band of its objective and for every stiffness of it, at its own force and at more.
+//! The motions of a design besides those from rest, over the band and the stiffnesses of its objective, at the design's force and at larger
+//! ones.
 
 use super::certificate::{Irregular, MISSED, Margin, Motions, Other, SHARE};
 use crate::amount::Amount;
@@ -12,24 +13,24 @@ use retune_optim::{Evaluation, Goal, Limit, Limits, PerLimit, Stiffnesses, Unusa
 use retune_solver::Settings;
 use retune_study::Margins;
 
-/// Runs from rest over a band, and other starts for each: as `retune branches` has them if not told otherwise.
+/// Runs from rest over a band, and other starts for each: the defaults of `retune branches`.
 const SAMPLES: usize = 31;
 const STARTS: usize = 16;
-/// Other starts for each where few are to do.
+/// Other starts for each with [`Effort::Few`].
 const FEW: usize = 2;
-/// A force at which motions are looked for beside that of the margin that is needed, so that margins can be compared.
+/// A further force at which motions are searched for, above that of the needed margin, so that margins can be compared.
 const MORE: f64 = 1.2;
-/// At more force motions are followed that have this share of the value from rest.
+/// At larger forces motions are followed only above this share of the value from rest.
 const FOLLOWED: f64 = 0.8;
-/// A motion counts that has by this factor more than the runs from rest.
+/// A motion counts if its value exceeds that of the runs from rest by this factor.
 pub(super) const NOTABLE: f64 = 1.05;
 
-/// How motions are looked for.
+/// How motions are searched for.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Effort {
-    /// By branches, at the design's own force and at more, up to these margins.
+    /// Along branches, at the design's force and at larger ones for these margins.
     Whole(Margins),
-    /// By what a few starts lead to at its own force.
+    /// From a few starts, at the design's force only.
     Few,
 }
 
@@ -37,11 +38,11 @@ pub(super) struct Coexisting {
     pub motions: Motions,
     /// None where the force has no amplitude, or was not raised.
     pub margin: Option<Margin>,
-    /// The largest values of all motions at the design's own force.
+    /// The largest values of all motions at the design's force.
     pub reached: PerLimit<f64>,
 }
 
-/// Where motions are looked for: a band and a stiffness of a term of the objective.
+/// A band and a stiffness of a term of the objective, over which motions are searched for.
 pub(super) struct Place {
     pub scene: Scene,
     goal: Goal,
@@ -50,14 +51,15 @@ pub(super) struct Place {
     pub from_rest: f64,
 }
 
-/// The motions at a place for a force.
+/// The motions at a place for a multiple of the force.
 pub(super) struct AtForce {
     pub times: f64,
     pub from_rest: f64,
     pub branches: Branches,
 }
 
-/// Finds them, with the largest value of every measure over all. None where there is nothing to find: the force has no period, or the damper strikes nothing.
+/// Finds the coexisting motions, and the largest value of every measure over all. None where there are none to find: without walls, without
+/// a force, or with a force without a period.
 pub(super) fn coexisting(
     scene: &Scene,
     own: &Evaluation,
@@ -128,7 +130,7 @@ pub(super) fn coexisting(
     Ok(most.map(|most| Coexisting { motions: Motions { k1_of, ..most }, margin, reached }))
 }
 
-/// The places of all terms. Of a range of stiffnesses, its ends and that of the worst run.
+/// The places of all terms; a range of stiffnesses gives its ends and the stiffness of the worst run.
 fn places(scene: &Scene, own: &Evaluation, goal: &Goal, settings: &Settings) -> Result<Vec<Place>, Unusable> {
     let terms = goal.objective.terms();
     let worst = own.worst_run(*scene, goal);
@@ -166,7 +168,7 @@ impl Place {
         Plan { samples: SAMPLES, starts: self.starts, ..Plan::over(Parameter::Omega, self.band) }
     }
 
-    /// The plan at its own force.
+    /// The plan at the design's force.
     fn own_plan(&self, effort: Effort) -> Plan {
         match effort {
             Effort::Whole(_) => Plan { passes: 1, ..self.plan() },
@@ -179,7 +181,7 @@ impl Place {
 
     fn at(&self, times: f64, settings: &Settings, effort: Effort) -> Result<AtForce, Unusable> {
         let scene = with_force(&self.scene, times)?;
-        // A steady motion whose damper reaches a wall there has no value: that of the linear one is compared with.
+        // A steady motion whose damper reaches a wall has no value: the value extrapolated linearly is used instead.
         let power = if self.goal.objective.quantity() == Measure::Energy { 2 } else { 1 };
         let linear = self.from_rest * times.powi(power);
         let from_rest = if times == 1.0 {
@@ -187,7 +189,7 @@ impl Place {
         } else {
             self.goal.evaluate(&scene, settings, f64::INFINITY).map_or(linear, |found| found.value)
         };
-        // What may have much more is looked for at more force: motions with far less are not followed, nor are irregular windows sampled.
+        // At larger forces only motions with large values matter: smaller ones are not followed, and irregular windows are not sampled.
         let plan = if times == 1.0 {
             self.own_plan(effort)
         } else {

@@ -1,4 +1,4 @@
-//! The value of a design under other records than those of its study: the other sign, other draws, fewer samples.
+//! The value of a design under variants of the study's records: the other sign, other draws, fewer samples.
 
 use super::certificate::verdict::or_none;
 use super::walls::{Change, Changed, Outcome};
@@ -12,13 +12,13 @@ use serde::Serialize;
 const DRAWS: u64 = 5;
 
 #[derive(Clone, Copy)]
-enum Another {
+enum Variant {
     Sign,
     Samples,
     Draw(u64),
 }
 
-impl Another {
+impl Variant {
     fn of(self, history: History) -> Option<History> {
         match self {
             Self::Sign => history.reversed(),
@@ -35,27 +35,27 @@ impl Another {
         }
     }
 
-    /// A changed forcing; none where there is nothing to change.
+    /// The changed forcing; none where there is nothing to change.
     fn forcing(self, forcing: &Forcing) -> Option<Forcing> {
         let source = Source::History(self.of(*forcing.history()?)?);
         Some(Forcing { source, ..*forcing })
     }
 }
 
-/// A design with its own value under other records; none where its study has no record.
+/// The values of a design under other records; none where its study has no record.
 pub(super) fn other_records(study: &Study, own: Amount) -> Option<Records> {
-    // A stationary motion is that of the spectrum, whatever is drawn of it.
+    // A stationary motion depends on the spectrum only, not on the draw.
     study.scene.forcing.history().filter(|_| !study.objective().is_stationary())?;
-    let draws = (1..=DRAWS).map(Another::Draw);
-    // What strikes no wall has the same values under the other sign.
+    let draws = (1..=DRAWS).map(Variant::Draw);
+    // Without walls the values are the same under the other sign.
     let has_walls = study.scene.damper.is_some_and(|damper| damper.contact.is_some());
-    let sign = has_walls.then_some(Another::Sign);
-    let changes: Vec<Another> = sign.into_iter().chain([Another::Samples]).chain(draws).collect();
+    let sign = has_walls.then_some(Variant::Sign);
+    let changes: Vec<Variant> = sign.into_iter().chain([Variant::Samples]).chain(draws).collect();
     let under: Vec<Changed> = changes.into_par_iter().filter_map(|change| under(study, change)).collect();
     (!under.is_empty()).then(|| Records::new(own, under))
 }
 
-fn under(study: &Study, change: Another) -> Option<Changed> {
+fn under(study: &Study, change: Variant) -> Option<Changed> {
     let (mut goal, mut scene, mut any) = (study.goal(), study.scene, false);
     let mut changed = |forcing: &mut Forcing| {
         if let Some(other) = change.forcing(forcing) {
@@ -78,7 +78,7 @@ pub struct Records {
 }
 
 impl Records {
-    /// Of a design with its own value.
+    /// The records of a design with this value.
     pub fn new(Amount { quantity, value, .. }: Amount, each: Vec<Changed>) -> Self {
         let others = each.iter().map(|one| one.words(quantity));
         let others = joined(&others.collect::<Vec<_>>(), ", ");

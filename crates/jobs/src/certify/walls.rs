@@ -1,4 +1,4 @@
-//! The value of a design between other walls than those of its study: walls that lose more or less, softer ones and stiffer ones.
+//! The value of a design with walls other than the study's: with other restitutions, softer and stiffer.
 
 use super::certificate::measured::Sensitivity;
 use super::certificate::verdict::or_none;
@@ -10,12 +10,13 @@ use retune_optim::{Evaluation, Goal, Limits, Response, Unusable};
 use retune_study::{Study, joined};
 use serde::Serialize;
 
-/// Restitutions, each the same at every speed; the first is that of walls that lose nothing.
+/// Restitutions, the same at every speed; the first is that of lossless walls.
 const RESTITUTIONS: [f64; 5] = [1.0, 0.9, 0.8, 0.7, 0.6];
 /// Multiples of the stiffness K of both walls.
 const FACTORS: [f64; 2] = [0.5, 2.0];
 
-/// A design with its own value, and what errors of its parameters make of it, between other walls; none where it touches none, or its steady motion has a value only away from them.
+/// The values of a design with other walls, with words that compare them with `own` and `sensitivity`; none where it touches no wall, or
+/// where the objective is steady and so excludes contacts.
 pub(super) fn other_walls(
     study: &Study,
     own: Amount,
@@ -27,7 +28,7 @@ pub(super) fn other_walls(
     if goal.objective.is_steady() || !(strikes || touches(study)) {
         return None;
     }
-    // Each with a loss in place of those that the objective has, or with the study's own.
+    // Each restitution replaces the losses of the study and of the objective.
     let mut with_loss = goal.clone();
     with_loss.objective.for_each_term(&mut |term| term.restitution = None);
     let settings = study.solver.settings();
@@ -49,23 +50,23 @@ pub(super) fn other_walls(
         || FACTORS.par_iter().filter_map(softer).collect(),
     );
     let mut walls = Walls { contacts: String::new(), restitutions, stiffness };
-    walls.contacts = walls.said(study, own, sensitivity);
+    walls.contacts = walls.summary(study, own, sensitivity);
     Some(walls)
 }
 
-/// Whether the damper touches a wall in a run from rest over the band of the objective; said to, where that cannot be told.
+/// Whether the damper touches a wall in a run from rest over the band of the objective; true where a run fails.
 fn touches(study: &Study) -> bool {
     let mut goal = Goal { limits: Limits::default(), peaks: false, ..study.goal() };
     goal.window.from = 0.0;
     goal.objective.for_each_term(&mut |term| {
         (term.quantity, term.response) = (Measure::ContactForce, Response::Window);
-        term.restitution = None; // what touches nothing loses nothing
+        term.restitution = None; // the loss does not matter until there is a contact
     });
     let found = goal.evaluate(&study.scene, &study.solver.settings(), f64::INFINITY);
     !found.is_ok_and(|found| found.worst.largest <= 0.0)
 }
 
-/// A scene whose contacts have a restitution, whatever their loss was.
+/// The scene with a restitution in place of any loss.
 fn with_restitution(mut scene: Scene, restitution: f64) -> Result<Scene, Unusable> {
     if let Some(Damper { contact: Some(Contact::Hertz(surfaces)), .. }) = &mut scene.damper {
         (surfaces.loss, surfaces.loss_obstacle) = (Loss::default(), None);
@@ -81,18 +82,18 @@ fn with(mut scene: Scene, parameter: Parameter, value: f64) -> Result<Scene, Unu
 /// Growth of the value above which the design should be tuned for all restitutions.
 const GROWTH: f64 = 0.1;
 
-/// A design between walls that lose more or less, and between softer and stiffer ones.
+/// The values of a design with other restitutions and other stiffnesses of its walls.
 #[derive(Clone, Debug, Serialize)]
 pub struct Walls {
     contacts: String,
-    /// From walls that lose nothing on; each in the place of the loss of the study.
+    /// The values for [`RESTITUTIONS`], each in place of the study's loss.
     restitutions: Vec<Changed>,
-    /// Not of rigid walls.
+    /// Empty for rigid walls.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     stiffness: Vec<Changed>,
 }
 
-/// What is otherwise than in the study.
+/// A difference from the study.
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Change {
@@ -117,9 +118,9 @@ pub struct Changed {
 pub struct Outcome {
     /// The objective, in the unit of its quantity; null where it has none.
     pub value: f64,
-    /// Of the worst run, rad/s.
+    /// Frequency of the worst run, rad/s.
     pub omega: f64,
-    /// Where the study has limits.
+    /// Whether the limits are kept, if the study has any.
     #[serde(skip_serializing_if = "Option::is_none")]
     keeps_limits: Option<bool>,
     /// Runs that should have settled and did not: their value is that of the window.
@@ -131,7 +132,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Of a design under the limits of its study, if it has any.
+    /// The outcome of an evaluation; `limits` tells whether the study has limits.
     pub fn new(found: Result<Evaluation, Error>, limits: bool) -> Self {
         let none =
             Self { value: f64::INFINITY, omega: f64::NAN, keeps_limits: None, unsettled: 0, reason: None };
@@ -149,7 +150,7 @@ impl Outcome {
 }
 
 impl Changed {
-    /// The change in words, to stand behind a value.
+    /// The change in words, to follow a value.
     pub fn place(&self) -> String {
         match &self.change {
             Change::Restitution(e) => format!("at e = {e}"),
@@ -173,7 +174,7 @@ impl Walls {
         self.restitutions.iter().chain(&self.stiffness)
     }
 
-    /// The restitution with the largest value; of several the largest restitution. None where none has a value.
+    /// The restitution with the largest value, the largest of equal ones; none where none has a value.
     pub fn worst(&self) -> Option<(f64, &Outcome)> {
         let known = self.restitutions.iter().filter_map(|one| match one.change {
             Change::Restitution(e) if one.found.value.is_finite() => Some((e, &one.found)),
@@ -182,7 +183,7 @@ impl Walls {
         known.reduce(|worst, one| if one.1.value > worst.1.value { one } else { worst })
     }
 
-    fn said(&self, study: &Study, own: Amount, sensitivity: &[Sensitivity]) -> String {
+    fn summary(&self, study: &Study, own: Amount, sensitivity: &[Sensitivity]) -> String {
         let mut words = self.largest(study, own, sensitivity);
         if !self.stiffness.is_empty() {
             let each = self.stiffness.iter().map(|one| one.words(own.quantity));
@@ -201,7 +202,7 @@ impl Walls {
         words
     }
 
-    /// The value without loss and the largest, and of what that is the largest.
+    /// The value without loss, the largest value, and over what it is the largest, in words.
     fn largest(
         &self,
         study: &Study,
@@ -226,7 +227,7 @@ impl Walls {
         format!("{lossless}, {} at e = {restitution}{more}: {which}", measured(found.value, quantity))
     }
 
-    /// What is to be known of single values.
+    /// Caveats on single values.
     fn reservations(&self) -> String {
         let places = |is: fn(&Outcome) -> bool| {
             let those = self.all().filter(|one| is(&one.found)).map(Changed::place);

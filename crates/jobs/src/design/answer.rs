@@ -5,18 +5,18 @@ use super::candidate::{Candidate, OtherSign, What};
 use super::comparison::Comparison;
 use super::requirements::{Constraint, Dampers, Requirements};
 use super::ssvi::is_lossy;
-use super::words::{alike, broken_at_spaces, frequency, legible, limit, parameters, percent, sized, tuning};
+use super::words::{alike, frequency, legible, limit, parameters, percent, sized, tuning, wrap_at_spaces};
 use crate::summary::as_much;
 use retune_model::Measure;
 use retune_optim::{Limit, Need};
 use retune_study::{counted, rounded};
 use std::path::Path;
 
-/// A value from rest on that exceeds a limit by more than this share is told.
+/// A transient value that exceeds a limit by more than this share is reported.
 const ABOVE: f64 = 1e-3;
 
 pub(super) fn answer(requirements: &Requirements, compared: &Comparison, out: &Path) -> String {
-    let broken = broken_at_spaces();
+    let broken = wrap_at_spaces();
     let fill = |line: String| textwrap::fill(&line, &broken);
     let words = build(requirements, compared).into_iter().chain(findings(requirements, compared));
     let out = out.display();
@@ -25,14 +25,14 @@ pub(super) fn answer(requirements: &Requirements, compared: &Comparison, out: &P
     format!("{}\n\n{}\n{next}", table(requirements, compared), words.join("\n"))
 }
 
-/// The study with which one goes on.
+/// The study file to continue with.
 fn next(compared: &Comparison) -> String {
     format!("studies-{}.json", compared.chosen().unwrap_or(&compared.tmd).study.name())
 }
 
-/// The rows of the comparison: a quantity, what is allowed of it, and the value and the place of each candidate.
+/// The rows of the comparison: a quantity with its limit, then the value of each candidate and its frequency.
 pub(super) fn rows(requirements: &Requirements, compared: &Comparison) -> Vec<Vec<String>> {
-    // Under a shock or a record limits hold from rest on, and so must the damper.
+    // Under a shock or a record limits apply from rest on, even if largest values count only later.
     let later = is_later(requirements);
     let allowed = |measure: Measure| {
         let constraint = Constraint::Of(Limit::Of(measure));
@@ -44,10 +44,10 @@ pub(super) fn rows(requirements: &Requirements, compared: &Comparison) -> Vec<Ve
         let first = format!("{}{allowed}", measure.name().replace('_', " "));
         let values: Vec<f64> = compared.all().map(|of| of.value(measure)).collect();
         let cell = |(of, value): (&Candidate, String)| {
-            let Need { value: own, omega, .. } = of.steady.get(measure);
-            match own {
+            let Need { value: steady, omega, .. } = of.steady.get(measure);
+            match steady {
                 0.0 => "-".to_owned(),
-                _ if !own.is_finite() || of.is_transient() => value,
+                _ if !steady.is_finite() || of.is_transient() => value,
                 _ => format!("{value}, {}", frequency(omega, requirements.frequencies)),
             }
         };
@@ -56,16 +56,16 @@ pub(super) fn rows(requirements: &Requirements, compared: &Comparison) -> Vec<Ve
     let from_rest = |measure: Measure| {
         let first = format!("from rest: {}{}", measure.name().replace('_', " "), allowed(measure));
         let values: Vec<f64> = compared.all().map(|of| of.most().get(measure).value).collect();
-        let cell = |(value, said): (&f64, String)| if *value == 0.0 { "-".to_owned() } else { said };
+        let cell = |(value, text): (&f64, String)| if *value == 0.0 { "-".to_owned() } else { text };
         std::iter::once(first).chain(values.iter().zip(alike(&values, measure.unit())).map(cell)).collect()
     };
-    let told = || compared.measures().filter(|measure| is_told(requirements, compared, *measure));
-    let mut rows: Vec<Vec<String>> = told().map(row).collect();
+    let reported = || compared.measures().filter(|measure| is_reported(requirements, compared, *measure));
+    let mut rows: Vec<Vec<String>> = reported().map(row).collect();
     if later {
-        let felt = |measure: &Measure| {
+        let matters = |measure: &Measure| {
             Measure::OF_DAMPER.contains(measure) || measure.is_of_walls() || requirements.is_limited(*measure)
         };
-        rows.extend(told().filter(felt).map(from_rest));
+        rows.extend(reported().filter(matters).map(from_rest));
     }
     if let Some(error) = requirements.k1_error {
         let off = ["-", "+"].map(|sign| format!("{sign}{}", percent(error)));
@@ -103,8 +103,8 @@ fn table(requirements: &Requirements, compared: &Comparison) -> String {
     rows.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// Whether a quantity is told: what a wall feels only where a candidate strikes one, or a limit is on it.
-pub(super) fn is_told(requirements: &Requirements, compared: &Comparison, measure: Measure) -> bool {
+/// Whether a quantity is reported: those of wall contacts only if a candidate strikes a wall or the quantity is limited.
+pub(super) fn is_reported(requirements: &Requirements, compared: &Comparison, measure: Measure) -> bool {
     let most =
         |of: &Candidate| if of.is_transient() { of.most().get(measure).value } else { of.value(measure) };
     let felt = || compared.all().any(|of| most(of) != 0.0);
@@ -118,19 +118,19 @@ pub(super) fn build(requirements: &Requirements, compared: &Comparison) -> Vec<S
         return in_vain(compared, chosen);
     }
     let goal = compared.goal;
-    let said = |goal_of: f64| sized(goal_of, goal.unit());
-    let (name, own) = (goal.name(), said(chosen.goal));
+    let with_unit = |goal_of: f64| sized(goal_of, goal.unit());
+    let (name, tuned) = (goal.name(), with_unit(chosen.goal));
     let times = compared.none.goal / chosen.goal;
     let reduction = if times.is_finite() {
-        let none = said(compared.none.goal);
+        let none = with_unit(compared.none.goal);
         let less = if times < 1.1 {
             format!("{} less", percent(1.0 - 1.0 / times))
         } else {
             format!("{} times less", rounded(times, 3))
         };
-        format!("{name} falls from {none} to {own}, {less}")
+        format!("{name} falls from {none} to {tuned}, {less}")
     } else {
-        format!("{name} is {own}, and has no bound without a damper")
+        format!("{name} is {tuned}, and has no bound without a damper")
     };
     let why = match (chosen.what, &compared.ssvi, requirements.dampers) {
         (_, _, Dampers::Tmd) => String::new(),
@@ -138,11 +138,11 @@ pub(super) fn build(requirements: &Requirements, compared: &Comparison) -> Vec<S
             "; no SSVI NES was found that keeps the limits".to_owned()
         }
         (What::Tmd, Some(ssvi), _) if ssvi.goal < chosen.goal => {
-            let has = format!("; an SSVI NES has {}", said(ssvi.goal));
+            let has = format!("; an SSVI NES has {}", with_unit(ssvi.goal));
             let other = compared.other_sign.as_ref().filter(|_| requirements.driving.has_either_sign());
             match (&compared.ssvi_certificate, other) {
                 (Some(_), Some(OtherSign { goal: other, .. })) if *other > chosen.goal => {
-                    format!("{has}, but {} with the other sign of the record", said(*other))
+                    format!("{has}, but {} with the other sign of the record", with_unit(*other))
                 }
                 (Some(_), Some(OtherSign { broken, .. })) if !broken.is_empty() => {
                     format!("{has}, but breaks a limit with the other sign of the record")
@@ -159,7 +159,7 @@ pub(super) fn build(requirements: &Requirements, compared: &Comparison) -> Vec<S
             }
         }
         (What::Tmd, Some(ssvi), _) => {
-            let (has, as_much) = (said(ssvi.goal), as_much(ssvi.goal / chosen.goal));
+            let (has, as_much) = (with_unit(ssvi.goal), as_much(ssvi.goal / chosen.goal));
             let (steady, most) = (ssvi.value(Measure::ContactForce), ssvi.most().get(Measure::ContactForce));
             let strikes = if steady > 0.0 {
                 format!("strikes its walls with {}", sized(steady, "N"))
@@ -171,9 +171,9 @@ pub(super) fn build(requirements: &Requirements, compared: &Comparison) -> Vec<S
         (What::Tmd, None, _) => {
             "; of the SSVI NES that were tried, none that strikes its walls comes near".to_owned()
         }
-        (_, _, Dampers::Ssvi) => format!("; the best TMD has {}", said(compared.tmd.goal)),
+        (_, _, Dampers::Ssvi) => format!("; the best TMD has {}", with_unit(compared.tmd.goal)),
         _ if compared.tmd.feasible => {
-            let (has, as_much) = (said(compared.tmd.goal), as_much(compared.tmd.goal / chosen.goal));
+            let (has, as_much) = (with_unit(compared.tmd.goal), as_much(compared.tmd.goal / chosen.goal));
             format!("; the best TMD has {has}, {as_much}")
         }
         _ => "; no TMD of this mass was found that keeps the limits".to_owned(),
@@ -188,18 +188,18 @@ pub(super) fn build(requirements: &Requirements, compared: &Comparison) -> Vec<S
     lines
 }
 
-/// That no damper does what is asked for.
+/// Words that no damper lowers the goal notably.
 fn in_vain(compared: &Comparison, best: &Candidate) -> Vec<String> {
     let (goal, what) = (compared.goal, best.what.name());
-    let [none, own] = [compared.none.goal, best.goal].map(|value| sized(value, goal.unit()));
+    let [none, tuned] = [compared.none.goal, best.goal].map(|value| sized(value, goal.unit()));
     let words = format!(
-        "  {} is {none} without a damper and {own} with the best {what} that was found. Look at the other rows: another --goal may fall, or take more --mass.",
+        "  {} is {none} without a damper and {tuned} with the best {what} that was found. Look at the other rows: another --goal may fall, or take more --mass.",
         goal.name()
     );
     vec![format!("Build no damper for this: none was found that lowers {} by 0.1 %.", goal.name()), words]
 }
 
-/// What a formula gives, beside the best TMD.
+/// The TMD of a formula compared with the best TMD, in words.
 fn beside((formula, tmd): &(Formula, Candidate), best: f64, goal: Measure) -> String {
     let more = tmd.goal / best - 1.0;
     let beside = match tmd.feasible {
@@ -212,7 +212,7 @@ fn beside((formula, tmd): &(Formula, Candidate), best: f64, goal: Measure) -> St
     format!("  {name} (k2 = {k2}, c2 = {c2}) gives {has}{beside}.")
 }
 
-/// That nothing keeps the limits, and what would.
+/// Words that no design keeps the limits, and the mass that would.
 fn infeasible(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
     let broken = |of: &Candidate| {
         let all = of.binding.iter().filter(|(limit, value)| {
@@ -239,7 +239,7 @@ fn infeasible(requirements: &Requirements, compared: &Comparison) -> Vec<String>
     lines
 }
 
-/// What each limit costs, how sure the answer is, and what was assumed.
+/// The cost of each limit, the certainty of the answer, and the assumptions.
 pub(super) fn findings(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
     let mut lines: Vec<String> = costs(requirements, compared);
     lines.extend(from_rest(requirements, compared));
@@ -302,12 +302,12 @@ pub(super) fn findings(requirements: &Requirements, compared: &Comparison) -> Ve
 
 fn costs(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
     let goal = compared.goal;
-    let said = |of: &Candidate| sized(of.goal, goal.unit());
-    let cost = |own: &Candidate, free: &Candidate| {
-        let (more, name) = (own.goal / free.goal - 1.0, own.what.name());
-        // Without the limit an SSVI NES was searched from the one with it alone.
-        let least = if own.what == What::Ssvi { "at least " } else { "" };
-        let instead = format!("({} instead of {})", said(own), said(free));
+    let goal_of = |of: &Candidate| sized(of.goal, goal.unit());
+    let cost = |limited: &Candidate, free: &Candidate| {
+        let (more, name) = (limited.goal / free.goal - 1.0, limited.what.name());
+        // Without the limit the SSVI NES was searched only from the design with it.
+        let least = if limited.what == What::Ssvi { "at least " } else { "" };
+        let instead = format!("({} instead of {})", goal_of(limited), goal_of(free));
         if more >= 1.0 {
             format!(
                 "makes {} of the {name} {least}{} times as large {instead}",
@@ -327,15 +327,15 @@ fn costs(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
         if compared.tmd.feasible {
             words.push(cost(&compared.tmd, &of.tmd));
         } else if of.tmd.feasible {
-            let (name, has) = (goal.name(), said(&of.tmd));
+            let (name, has) = (goal.name(), goal_of(&of.tmd));
             let others = if compared.costs.len() > 1 { " with the others" } else { "" };
             words.push(format!(
                 "is one that no TMD of this mass was found to keep{others}: without it {name} is {has}"
             ));
         }
-        if let Some(own) = compared.chosen().filter(|chosen| chosen.what == What::Ssvi) {
+        if let Some(limited) = compared.chosen().filter(|chosen| chosen.what == What::Ssvi) {
             let stays = || "the SSVI NES stays below it".to_owned();
-            words.push(of.ssvi.as_ref().map_or_else(stays, |free| cost(own, free)));
+            words.push(of.ssvi.as_ref().map_or_else(stays, |free| cost(limited, free)));
         }
         let name = limit(requirements, of.constraint);
         (!words.is_empty()).then(|| format!("The limit {name} {}.", words.join("; ")))
@@ -343,9 +343,9 @@ fn costs(requirements: &Requirements, compared: &Comparison) -> Vec<String> {
     compared.costs.iter().filter_map(line).collect()
 }
 
-/// Limits that are exceeded while the motion begins.
+/// Limits that the transient from rest exceeds.
 fn from_rest(requirements: &Requirements, compared: &Comparison) -> Option<String> {
-    // Under a shock or a record they hold from rest on.
+    // Under a shock or a record limits apply from rest on.
     let chosen = compared.chosen().filter(|chosen| !chosen.is_transient())?;
     let above = requirements.limits.set().filter_map(|limit| {
         let Limit::Of(measure) = limit else { return None };

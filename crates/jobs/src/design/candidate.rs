@@ -1,4 +1,4 @@
-//! A damper that may be built, or none: what it has of each quantity over the whole band.
+//! A candidate, a damper or none, and its largest value of each quantity over the whole band.
 
 use super::resonance::about_resonance;
 use super::settled::settled;
@@ -8,9 +8,9 @@ use retune_optim::{Goal, Limit, Limits, Need, Stiffnesses, Unusable};
 use retune_study::{Rule, Study};
 use serde::Serialize;
 
-/// A candidate is measured on so many times the samples of a search.
+/// A candidate is evaluated on this many times the samples of a search.
 const MORE: usize = 4;
-/// A search in time looks at every fourth of the stiffnesses that there may be, the ends among them.
+/// A search by runs in time uses every fourth of the stiffnesses, including both ends.
 const SPARSE: usize = 4;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -36,12 +36,12 @@ impl What {
     }
 }
 
-/// What a damper has under a shock or a record with the other sign.
+/// The values of a damper under a shock or record with the opposite sign.
 #[derive(Clone, Debug)]
 pub struct OtherSign {
     /// The goal, in its unit.
     pub goal: f64,
-    /// Limits that it breaks, each with what it has.
+    /// The limits that it breaks, each with the value reached.
     pub broken: Vec<(Limit, f64)>,
 }
 
@@ -49,24 +49,25 @@ pub struct OtherSign {
 #[derive(Clone, Debug)]
 pub struct Candidate {
     pub what: What,
-    /// The study by which it is measured, with it in its scene.
+    /// The study by which it is evaluated, with the candidate in its scene.
     pub study: Study,
     /// The value of the goal, in its unit.
     pub goal: f64,
     pub feasible: bool,
-    /// Limits that it reaches to 1 %, or breaks, with what it has.
+    /// The limits that it breaks or reaches to within 1 %, each with the value reached.
     pub binding: Vec<(Limit, f64)>,
-    /// Largest values once the motion is steady, each with its place; under a shock or a record, from the time on from which they count.
+    /// Largest values of the steady motion, each with its place; under a shock or a record, those from the time on from which they count.
     pub steady: PerMeasure<Need>,
-    /// The same from rest on, of the one to build: many runs.
+    /// Largest values from rest on, where computed, since they take many runs: always for the recommended candidate and under a shock or a
+    /// record.
     pub from_rest: Option<PerMeasure<Need>>,
 }
 
 impl Candidate {
-    /// Measures the scene of a study, with its damper or without, once it has settled.
+    /// Evaluates the scene of a study, with or without a damper, once its motion has settled.
     pub fn new(what: What, study: &Study) -> Result<Self, Unusable> {
         let study = settled(study);
-        let mut steady = own_needs(&study)?;
+        let mut steady = objective_needs(&study)?;
         let (goal, settings) = (on_many_samples(&study), study.solver.settings());
         let mut found = goal.evaluate(&study.scene, &settings, f64::INFINITY)?;
         if let Some(narrow) = about_resonance(&study) {
@@ -85,7 +86,7 @@ impl Candidate {
                 steady.set(measure, Need { value: 0.0, ..own });
             }
         }
-        // Peaks between samples are told apart a little better here than in a search.
+        // Peaks between samples are resolved slightly better here than in a search.
         let best = steady.get(study.quantity()).value;
         Ok(Self {
             what,
@@ -98,29 +99,29 @@ impl Candidate {
         })
     }
 
-    /// The same with its largest values from rest on.
+    /// The candidate with its largest values from rest on.
     pub fn with_start(self) -> Result<Self, Unusable> {
         let from_rest = over_band(&self.study, |goal, Study { scene, solver, .. }| {
-            let asked = (&self.steady, told(&goal.limits));
+            let asked = (&self.steady, report_above(&goal.limits));
             goal.needs_from_rest(scene, &solver.settings(), asked, &|| true)
         })?;
         Ok(Self { from_rest: Some(from_rest), ..self })
     }
 
-    /// The largest values from rest on, or those of the steady motion where the others were not looked at.
+    /// The largest values from rest on, or those of the steady motion if the former were not computed.
     pub fn most(&self) -> &PerMeasure<Need> {
         self.from_rest.as_ref().unwrap_or(&self.steady)
     }
 
-    /// The [goal](Self::goal) of the scene of a study, to the same bits, with which alone a search ends; none where it has no bound.
+    /// The [goal](Self::goal) of the scene of a study alone, bit for bit as in a candidate; none where it is unbounded.
     pub fn goal_of(study: &Study) -> Option<f64> {
         let study = settled(study);
-        let Need { value, .. } = own_needs(&study).ok()?.get(study.quantity());
+        let Need { value, .. } = objective_needs(&study).ok()?.get(study.quantity());
         (value.is_finite() && value > 0.0).then_some(value)
     }
 
-    /// The goal, in its unit, with k1 of the structure off by each of some shares of it, from the runs that the largest over all k1 is of; NaN where it has
-    /// no bound. A larger one than was known becomes that largest.
+    /// The goal, in its unit, with k1 off by each of the shares; NaN where it cannot be computed. A value above the candidate's goal
+    /// replaces it.
     pub fn with_k1_off<const N: usize>(&mut self, shares: [f64; N]) -> [f64; N] {
         let quantity = self.study.quantity();
         shares.map(|share| {
@@ -129,7 +130,7 @@ impl Candidate {
             if let Some(optimize) = &mut study.optimize {
                 optimize.objective.k1 = k1.map(|k1| Stiffnesses::Set(vec![k1]));
             }
-            let Ok(need) = own_needs(&study).map(|needs| needs.get(quantity)) else { return f64::NAN };
+            let Ok(need) = objective_needs(&study).map(|needs| needs.get(quantity)) else { return f64::NAN };
             if need.value > self.goal {
                 self.goal = need.value;
                 self.steady.set(quantity, need);
@@ -138,12 +139,12 @@ impl Candidate {
         })
     }
 
-    /// Whether it stands under a shock or a record, so that no value has a frequency.
+    /// Whether it is under a shock or a record, so that no value has a frequency.
     pub fn is_transient(&self) -> bool {
         self.study.scene.forcing.is_transient()
     }
 
-    /// What it has under what is given in time with the other sign; none under a harmonic.
+    /// Its values under the shock or record with the opposite sign; none under a harmonic.
     pub fn with_other_sign(&self) -> Option<OtherSign> {
         let Study { scene, solver, .. } = &self.study;
         let source = Source::History(scene.forcing.history()?.reversed()?);
@@ -158,7 +159,7 @@ impl Candidate {
         Some(OtherSign { goal: found.value, broken: broken.map(|limit| (limit, reached(&limit))).collect() })
     }
 
-    /// The largest steady value of a quantity, or that under a shock or a record, in its SI unit.
+    /// The largest value of a quantity in [`Self::steady`], in its SI unit.
     pub fn value(&self, measure: Measure) -> f64 {
         self.steady.get(measure).value
     }
@@ -177,13 +178,13 @@ impl Candidate {
         self.damper().map_or(0.0, |damper| damper.damping.get())
     }
 
-    /// Whether it touches a wall, as far as it was looked at.
+    /// Whether it touches a wall in any run made.
     pub fn strikes(&self) -> bool {
         self.most().get(Measure::ContactForce).value > 0.0
     }
 }
 
-/// A study with a design in its scene: the value of each parameter of the damper in its SI unit; NaN keeps that of the scene.
+/// The study with a design in its scene. `value` gives each parameter of the damper in its SI unit; NaN keeps the scene's value.
 ///
 /// # Errors
 /// A value is out of range, or the scene has no damper.
@@ -194,8 +195,8 @@ pub(super) fn with_design(study: &Study, value: impl Fn(Parameter) -> f64) -> Re
     Ok(Study { scene, ..study.clone() })
 }
 
-/// The goal by which a candidate is measured: on more samples of the band than a search takes, since a motion that is there in a part of it
-/// alone is missed by few. Several stiffnesses, at which resonances lie elsewhere, are samples enough.
+/// The goal by which a candidate is evaluated: on more samples of the band than in a search, since few samples miss a motion that exists
+/// only in a part of it. With several stiffnesses, which shift the resonances, the samples suffice.
 fn on_many_samples(study: &Study) -> Goal {
     let mut goal = study.goal();
     goal.objective.for_each_term(&mut |term| {
@@ -206,19 +207,19 @@ fn on_many_samples(study: &Study) -> Goal {
     goal
 }
 
-/// The largest values over what the objective looks at.
-fn own_needs(study: &Study) -> Result<PerMeasure<Need>, Unusable> {
+/// The largest values over everything that the objective covers.
+fn objective_needs(study: &Study) -> Result<PerMeasure<Need>, Unusable> {
     over_band(study, |goal, Study { scene, solver, .. }| goal.own_needs(scene, &solver.settings(), &|| true))
 }
 
 /// The largest values over the band, and over the part of a wide one about the resonance, whose peak may lie between its samples.
 fn over_band(
     study: &Study,
-    look: impl Fn(&Goal, &Study) -> Result<PerMeasure<Need>, Unusable>,
+    evaluate: impl Fn(&Goal, &Study) -> Result<PerMeasure<Need>, Unusable>,
 ) -> Result<PerMeasure<Need>, Unusable> {
-    let mut all = look(&on_many_samples(study), study)?;
+    let mut all = evaluate(&on_many_samples(study), study)?;
     if let Some(narrow) = about_resonance(study) {
-        let there = look(&on_many_samples(&narrow), &narrow)?;
+        let there = evaluate(&on_many_samples(&narrow), &narrow)?;
         for measure in Measure::ALL {
             if there.get(measure).value > all.get(measure).value {
                 all.set(measure, there.get(measure));
@@ -228,7 +229,7 @@ fn over_band(
     Ok(all)
 }
 
-/// The study by which a search in time goes: with k1 at few of the values that it may have.
+/// The study for searches by runs in time: with few of the values of k1.
 pub(super) fn at_few_stiffnesses(study: &Study) -> Study {
     let mut study = study.clone();
     let k1 = study.optimize.as_mut().and_then(|optimize| optimize.objective.k1.as_mut());
@@ -238,8 +239,9 @@ pub(super) fn at_few_stiffnesses(study: &Study) -> Study {
     study
 }
 
-/// From where on a value from rest is told, and its peaks between samples matter: above its limit; of the stroke, which is drawn, everywhere.
-fn told(limits: &Limits) -> PerMeasure<f64> {
+/// Thresholds above which values from rest are reported and their peaks between samples matter: the limits; for the stroke, which is drawn,
+/// any value.
+fn report_above(limits: &Limits) -> PerMeasure<f64> {
     PerMeasure(Measure::OF_RUN.map(|measure| match measure {
         Measure::Stroke => f64::NEG_INFINITY,
         _ => limits.get(Limit::Of(measure)).unwrap_or(f64::INFINITY),

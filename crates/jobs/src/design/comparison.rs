@@ -1,4 +1,4 @@
-//! The comparison: no damper, the best TMD, an SSVI NES, what each limit costs, and how sure the recommended one is.
+//! The comparison: no damper, the best TMD, an SSVI NES, the cost of each limit, and the certificate of the recommended one.
 
 use super::candidate::{Candidate, OtherSign, What, with_design};
 use super::requirements::{Constraint, Dampers, Requirements};
@@ -15,57 +15,58 @@ use retune_study::Study;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
 
-/// A goal that is larger by less than this share is as good: the damper without walls is recommended.
+/// Goals that differ by less than this share count as equal; then the damper without walls is recommended.
 const SAME: f64 = 0.05;
-/// A stroke that is this share of the best TMD's without limits is kept small by them.
+/// Limits restrict the stroke if it is below this share of the stroke of the best TMD without limits.
 const SMALL: f64 = 0.5;
-/// Halvings of the mass that would keep the limits, as a share of the structure's, in closed form and in time; and the largest that is looked at.
+/// Bisection steps for the lightest mass that keeps the limits, in closed form and by runs in time; and the largest mass tried, as a share
+/// of the structure's.
 const HALVINGS: [usize; 2] = [12, 5];
 const HEAVIEST: f64 = 0.3;
 
-/// What is compared, and what follows.
+/// The candidates and the conclusions.
 #[derive(Debug)]
 pub struct Comparison {
-    /// What is made small.
+    /// The quantity to minimise.
     pub goal: Measure,
     /// The structure alone.
     pub none: Candidate,
-    /// The formulas that fit the goal, and what the TMD of each has of it.
+    /// The formulas for the goal, each with its TMD.
     pub formulas: Vec<(Formula, Candidate)>,
     /// The best TMD.
     pub tmd: Candidate,
-    /// The best SSVI NES that was found that strikes its walls.
+    /// The best SSVI NES found that strikes its walls.
     pub ssvi: Option<Candidate>,
-    /// Designs of an SSVI NES that were evaluated; none where that was not wanted.
+    /// Number of SSVI NES designs evaluated; none if only a TMD was wanted.
     pub tried: Option<usize>,
-    /// The one to build; none where none keeps the limits.
+    /// The recommended damper; none where none keeps the limits.
     pub choice: Option<What>,
-    /// The goal of the SSVI NES under a shock or a record with the other sign, which a damper with one wall nearer than the other feels.
+    /// The SSVI NES under the shock or record with the opposite sign, which matters since its walls are not symmetric.
     pub other_sign: Option<OtherSign>,
-    /// Where the law of its walls is used outside of what it holds for.
+    /// Warnings where the contact law of its walls is used outside its range of validity.
     pub warnings: Vec<String>,
-    /// Whether the structure is one mode of many, whose force on the ground is not that of the whole.
+    /// Whether the structure is one of several modes, so that its force on the ground is not the total one.
     pub of_mode: bool,
-    /// What each limit costs.
+    /// The cost of each limit.
     pub costs: Vec<Cost>,
-    /// The goal with k1 as given, off by minus and by plus its error, of each candidate in the order of [`Self::all`].
+    /// The goal of each candidate, in the order of [`Self::all`], with k1 as given, minus and plus its error.
     pub detuned: Vec<[f64; 3]>,
-    /// Mass of the lightest TMD that would keep the limits, kg, where that of the mass that is given does not.
+    /// Mass of the lightest TMD that would keep the limits, kg, if that of the given mass does not.
     pub lightest: Option<f64>,
-    /// How sure the one to build is.
+    /// The certificate of the recommended damper.
     pub certificate: Option<Certificate>,
-    /// How sure the SSVI NES is, where it would be better than the TMD.
+    /// The certificate of the SSVI NES, where its goal is better than the TMD's.
     pub ssvi_certificate: Option<Certificate>,
 }
 
-/// What a limit costs.
+/// The cost of a limit.
 #[derive(Debug)]
 pub struct Cost {
     /// The limit.
     pub constraint: Constraint,
     /// The best TMD without it.
     pub tmd: Candidate,
-    /// The best SSVI NES without it, where one is to be built that the limit holds back.
+    /// The best SSVI NES without it, if an SSVI NES is recommended on which the limit is active.
     pub ssvi: Option<Candidate>,
 }
 
@@ -85,7 +86,7 @@ impl Comparison {
         std::iter::once(&self.none).chain(self.dampers())
     }
 
-    /// Refuses a comparison of which no damper keeps the limits by [`Error::Infeasible`].
+    /// Fails with [`Error::Infeasible`] if no damper keeps the limits.
     pub fn check_limits(&self) -> Result<(), Error> {
         match self.choice {
             Some(_) => Ok(()),
@@ -96,13 +97,13 @@ impl Comparison {
         }
     }
 
-    /// The quantities of which largest values are told: of one mode of many the force on the ground is not.
+    /// The quantities that are reported; the force on the ground is left out for one of several modes.
     pub fn measures(&self) -> impl Iterator<Item = Measure> + use<> {
         let of_mode = self.of_mode;
         Measure::ALL.into_iter().filter(move |measure| !of_mode || *measure != Measure::GroundForce)
     }
 
-    /// The one to build.
+    /// The recommended damper.
     pub fn chosen(&self) -> Option<&Candidate> {
         self.choice.and_then(|what| self.dampers().find(|damper| damper.what == what))
     }
@@ -125,13 +126,17 @@ fn best_tmd(requirements: &Requirements) -> Result<Candidate, Error> {
     tmd_of(&study, tmd::best(&study, &formulas)?)
 }
 
-fn by(requirements: &Requirements, study: &Study, formula: Formula) -> Result<(Formula, Candidate), Error> {
+fn by_formula(
+    requirements: &Requirements,
+    study: &Study,
+    formula: Formula,
+) -> Result<(Formula, Candidate), Error> {
     let mut tmd = tmd_of(study, [formula.k2, formula.c2])?;
     tmd.feasible &= requirements.k2_max.is_none_or(|most| formula.k2 <= most);
     Ok((formula, tmd))
 }
 
-/// Makes the whole comparison; what is known is told at once.
+/// Makes the whole comparison and reports partial results at once.
 pub(super) fn compare(
     requirements: &Requirements,
     [tmd_study, ssvi_study]: [&Study; 2],
@@ -146,8 +151,10 @@ pub(super) fn compare(
     let mut none = Candidate::new(What::None, &bare)?;
     let formulas = Formula::all(requirements, &tmd_study.scene.primary);
     let mut tmd = tmd_of(tmd_study, tmd::best(tmd_study, &formulas)?)?;
-    let formulas =
-        formulas.into_iter().map(|formula| by(requirements, tmd_study, formula)).collect::<Result<_, _>>()?;
+    let formulas = formulas
+        .into_iter()
+        .map(|formula| by_formula(requirements, tmd_study, formula))
+        .collect::<Result<_, _>>()?;
     let kept = if tmd.feasible { "" } else { " (breaks a limit)" };
     let (name, has) = (goal.name(), sized(tmd.goal, goal.unit()));
     let exact = if tmd.is_transient() { "" } else { ", exact" };
@@ -169,7 +176,7 @@ pub(super) fn compare(
             }
             best => (best.map(|(_, candidate)| candidate), None),
         };
-        ssvi::tell_compared(&found, ssvi.as_ref().zip(least), watch)?;
+        ssvi::report_compared(&found, ssvi.as_ref().zip(least), watch)?;
     }
     let other_sign = ssvi.as_ref().and_then(Candidate::with_other_sign);
     let much_better = |certificate: &Certificate| (1.0 + SAME) * worst_nearby(certificate) < tmd.goal;
@@ -217,19 +224,20 @@ pub(super) fn compare(
     })
 }
 
-/// The strokes by which the gaps of known designs are scaled: that of the best TMD, and, where limits keep it small, that of the best without them.
+/// The strokes by which the gaps of known designs are scaled: that of the best TMD and, where limits restrict it, that of the best TMD
+/// without limits.
 fn strokes(requirements: &Requirements, tmd: &Candidate) -> Result<Vec<f64>, Error> {
-    let own = tmd.value(Measure::Stroke);
+    let limited = tmd.value(Measure::Stroke);
     if requirements.constraints().is_empty() {
-        return Ok(vec![own]);
+        return Ok(vec![limited]);
     }
     let free = Requirements { limits: Limits::default(), k2_max: None, ..requirements.clone() };
-    let other = best_tmd(&free)?.value(Measure::Stroke);
-    Ok(if own < SMALL * other { vec![own, other] } else { vec![own] })
+    let unlimited = best_tmd(&free)?.value(Measure::Stroke);
+    Ok(if limited < SMALL * unlimited { vec![limited, unlimited] } else { vec![limited] })
 }
 
-/// The one to build: a damper without walls is simpler to build and easier to trust; one with walls must be much better, and hold where it
-/// is a little off.
+/// The recommendation. A damper without walls is simpler to build and easier to trust; one with walls must be clearly better and tolerate
+/// small errors.
 fn choice(
     requirements: &Requirements,
     tmd: &Candidate,
@@ -246,7 +254,8 @@ fn choice(
     }
 }
 
-/// What each limit costs the best TMD, and an SSVI NES that is to be built: the search without the limit goes on from the end of that with it.
+/// The cost of each limit for the best TMD, and for the SSVI NES if recommended: its search without the limit starts from the design with
+/// it.
 fn costs(
     requirements: &Requirements,
     (tmd, built): (&Candidate, Option<&Candidate>),
@@ -297,19 +306,19 @@ fn lightest(requirements: &Requirements, watch: &dyn Observer) -> Result<Option<
     Ok(Some(high))
 }
 
-/// A candidate as data, with its largest value of these quantities.
+/// A candidate as data, with its largest values of `measures`.
 fn data(of: &Candidate, measures: &[Measure]) -> Value {
     let largest = |need: &dyn Fn(Measure) -> Need| -> Map<String, Value> {
         let one = |measure: &Measure| {
             let Need { value, omega, k1, .. } = need(*measure);
-            let mut said = json!({ "value": value });
+            let mut entry = json!({ "value": value });
             if !of.is_transient() {
-                said["omega"] = json!(omega);
+                entry["omega"] = json!(omega);
             }
             if of.study.objective().k1.is_some() {
-                said["k1"] = json!(k1);
+                entry["k1"] = json!(k1);
             }
-            (measure.name().to_owned(), said)
+            (measure.name().to_owned(), entry)
         };
         measures.iter().map(one).collect()
     };
@@ -332,7 +341,7 @@ impl Serialize for Comparison {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let measures: Vec<Measure> = self.measures().collect();
         let data = |of: &Candidate| data(of, &measures);
-        let by = |(formula, damper): &(Formula, Candidate)| json!({ "name": formula.name, "damper": data(damper) });
+        let by_formula = |(formula, damper): &(Formula, Candidate)| json!({ "name": formula.name, "damper": data(damper) });
         let costs: Map<String, Value> = self
             .costs
             .iter()
@@ -350,7 +359,7 @@ impl Serialize for Comparison {
             "certificate": self.certificate.as_ref().filter(|_| !self.is_in_vain()).map(Certificate::short),
             "SSVI_NES_certificate": self.ssvi_certificate.as_ref().map(Certificate::short),
             "candidates": self.all().map(data).collect::<Vec<_>>(),
-            "formulas": self.formulas.iter().map(by).collect::<Vec<_>>(),
+            "formulas": self.formulas.iter().map(by_formula).collect::<Vec<_>>(),
             "limits": costs,
             "k1_off": self.detuned,
             "lightest_TMD": self.lightest,

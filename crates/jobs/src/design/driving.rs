@@ -1,4 +1,4 @@
-//! What moves the structure of a design: a harmonic force or base over a band of frequencies, or a shock or a record.
+//! The excitation of the structure of a design: a harmonic force or base motion over a band of frequencies, or a shock or a record.
 
 use crate::Error;
 use retune_model::{Amplitude, Course, Forcing, History, NonNegative, Source};
@@ -6,30 +6,30 @@ use retune_solver::Window;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
-/// What moves the structure.
+/// The excitation of the structure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Driving {
     /// A harmonic.
     Harmonic {
-        /// What its amplitude is of, and its size in the SI unit.
+        /// The kind of its amplitude, and its size in the SI unit.
         amplitude: (Amplitude, f64),
         /// Its angular frequencies, rad/s.
         band: [f64; 2],
     },
     /// A shock or a record.
     History {
-        /// It.
+        /// The forcing.
         forcing: Forcing,
-        /// From when on largest values count, s.
+        /// Time from which on largest values count, s.
         after: f64,
     },
 }
 
-/// Periods of the structure for which a run goes on after a shock or a record, and after the time from which largest values count.
+/// Length of a run in periods of the structure, after the end of a shock or record or after the time from which largest values count.
 const FREE: f64 = 10.0;
 
 impl Driving {
-    /// What the amplitude of a harmonic is of; none of a history.
+    /// The kind of amplitude of a harmonic; none for a history.
     pub fn amplitude(&self) -> Option<Amplitude> {
         match self {
             Self::Harmonic { amplitude: (of, _), .. } => Some(*of),
@@ -37,7 +37,7 @@ impl Driving {
         }
     }
 
-    /// The angular frequencies of a harmonic, rad/s; none of a history.
+    /// The angular frequencies of a harmonic, rad/s; none for a history.
     pub fn band(&self) -> Option<[f64; 2]> {
         match self {
             Self::Harmonic { band, .. } => Some(*band),
@@ -45,13 +45,13 @@ impl Driving {
         }
     }
 
-    /// Whether the next one is as likely to have the other sign: a record.
+    /// Whether the opposite sign is equally likely, as for a record.
     pub(super) fn has_either_sign(&self) -> bool {
         let Self::History { forcing, .. } = self else { return false };
         matches!(forcing.history(), Some(History { course: Course::Record(_), .. }))
     }
 
-    /// The forcing; a harmonic has that frequency of its band which is nearest to `natural`, rad/s.
+    /// The forcing; a harmonic has the frequency of its band nearest to `natural`, rad/s.
     pub(super) fn forcing(&self, natural: f64) -> Result<Forcing, Error> {
         let ((of, size), [from, to]) = match self {
             Self::Harmonic { amplitude, band } => (*amplitude, *band),
@@ -61,7 +61,7 @@ impl Driving {
         Ok(Forcing { source, frequency: NonNegative::new(natural.clamp(from, to))?, start: None })
     }
 
-    /// The run under a history, of a structure with this period (s); none of a harmonic.
+    /// The window of a run under a history, for a structure of this period, s; none for a harmonic.
     pub(super) fn run(&self, period: f64) -> Option<Window> {
         let Self::History { forcing, after } = self else { return None };
         let end = forcing.history().map_or(0.0, |History { course, .. }| course.end());

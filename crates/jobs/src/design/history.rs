@@ -7,11 +7,11 @@ use retune_study::read_record;
 use serde_json::{Map, Value, json};
 use std::path::Path;
 
-/// The fields of a record that may follow its file, and what it is of where that is left out.
+/// The fields that may follow the file of a record, and the default of `of`.
 const FIELDS: [&str; 4] = ["of", "unit", "column", "scale"];
 const OF: &str = "base acceleration";
 
-/// The shock or the record that is given, and from when on largest values count, s; none where neither is.
+/// The given shock or record, and the time from which on largest values count, s; none if neither is given.
 pub(super) fn given(specification: &Specification) -> Result<Option<(Forcing, f64)>, Error> {
     let Specification { shock, record, after, band, .. } = specification;
     let (name, typed) = match (shock, record, after) {
@@ -50,7 +50,7 @@ pub(super) fn given(specification: &Specification) -> Result<Option<(Forcing, f6
     Ok(Some((forcing, after)))
 }
 
-/// From when on largest values count, s.
+/// The time from which on largest values count, s.
 fn from(typed: &Typed) -> Result<f64, Error> {
     let after = typed.number("after", unit::TIME)?;
     if after >= 0.0 && after.is_finite() {
@@ -88,7 +88,7 @@ fn of_shock(typed: &Typed) -> Result<Forcing, String> {
     serde_json::from_value(fields).map_err(|error| error.to_string())
 }
 
-/// `quake.csv,unit=g,column=a`: the file, and what of it, as in `scene.forcing`.
+/// `quake.csv,unit=g,column=a`: the file, then its fields as in `scene.forcing`.
 fn of_record(typed: &Typed) -> Result<Forcing, String> {
     let mut parts = typed.text.split(',').map(str::trim);
     let mut fields = Map::new();
@@ -115,7 +115,7 @@ fn of_record(typed: &Typed) -> Result<Forcing, String> {
         serde_json::from_value(Value::Object(fields)).map_err(|error| error.to_string())?;
     let base = typed.file.as_deref().and_then(|file| Path::new(file).parent()).unwrap_or(Path::new(""));
     read_record(&mut forcing, base)?;
-    // The studies of a design hold its samples and need no other file.
+    // The samples are embedded, so that the studies of a design need no other file.
     if let Some((_, record)) = forcing.record_mut() {
         *record = record.whole();
     }

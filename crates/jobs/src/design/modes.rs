@@ -1,4 +1,4 @@
-//! A table of modes, of which one becomes the structure of a design.
+//! A table of modes, one of which becomes the structure of a design.
 
 use super::typed::Specification;
 use crate::Error;
@@ -10,8 +10,8 @@ use std::path::Path;
 /// The columns of a table, in any order: frequency, Hz, share of critical damping, modal mass, kg, and shape at the damper.
 const COLUMNS: [&str; 4] = ["f", "zeta", "M", "phi"];
 
-/// The structure that mode `which` (from 1) of a table is at the damper, and words on it and on the modes that are left out. Without a
-/// number it is the mode that a force at the damper moves most.
+/// The equivalent structure of mode `which` (from 1) at the damper, and words on it and on the modes left out. Without a number, the mode
+/// that a force at the damper excites most.
 ///
 /// # Errors
 /// The table cannot be read, or has no such mode.
@@ -34,9 +34,9 @@ pub fn structure(path: &Path, which: Option<usize>) -> Result<(Specification, St
     let specification =
         Specification { m1: typed(m1), k1: typed(k1), c1: typed(c1), ..Specification::default() };
     let ([m1, k1, c1], number) = ([m1, k1, c1].map(|value| rounded(value, 6)), chosen + 1);
-    let (own, others) = (frequency(mode.omega.get()), rounded(100.0 * left_out(&modes, chosen), 2));
+    let (natural, others) = (frequency(mode.omega.get()), rounded(100.0 * left_out(&modes, chosen), 2));
     let words = format!(
-        "mode {number} of {count}, {own}, is at the damper a structure of m1 = {m1} kg, k1 = {k1} N/m and c1 = {c1} N·s/m; at its \
+        "mode {number} of {count}, {natural}, is at the damper a structure of m1 = {m1} kg, k1 = {k1} N/m and c1 = {c1} N·s/m; at its \
          frequency the modes that are left out add {others} % to its displacement by a force there"
     );
     Ok((specification.within(&file), words))

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use retune_report::{Axis, Chart, Drawing, Key, Layer, Scale, Sheet, Stroke, Width, drawing};
 use retune_solver::{Rows, Window, trajectory};
 
-/// Points of a curve, beside its events.
+/// Points of a curve, besides its events.
 const POINTS: f64 = 1500.0;
 const MM: f64 = 1e3;
 

@@ -1,6 +1,6 @@
-//! The page of a design: the answer, all candidates over the band or in the run, the damper to scale, what was asked.
+//! The page of a design: the answer, all candidates over the band or in the run, the damper to scale, the requirements.
 
-use super::answer::{build, findings, is_told, rows};
+use super::answer::{build, findings, is_reported, rows};
 use super::candidate::{Candidate, What};
 use super::comparison::Comparison;
 use super::motion;
@@ -28,9 +28,9 @@ pub(super) fn page(requirements: &Requirements, compared: &Comparison) -> Docume
             .map(str::to_owned)
             .collect();
     let rows: Vec<Vec<String>> = rows(requirements, compared);
-    let told = |measure: &Measure| is_told(requirements, compared, *measure);
+    let reported = |measure: &Measure| is_reported(requirements, compared, *measure);
     let meant = |measure: Measure| format!("{} is {}", measure.name().replace('_', " "), measure.words());
-    let meaning: Vec<String> = compared.measures().filter(told).map(meant).collect();
+    let meaning: Vec<String> = compared.measures().filter(reported).map(meant).collect();
     let damper = |of: &Candidate| {
         let row = [of.what.name().to_owned(), parameters(of), tuning(of, requirements)];
         row.to_vec()
@@ -46,10 +46,11 @@ pub(super) fn page(requirements: &Requirements, compared: &Comparison) -> Docume
             let allowed = sized(requirements.allowed(cost.constraint), cost.constraint.unit());
             let value =
                 |of: Option<&Candidate>| of.map_or("-".to_owned(), |of| sized(of.goal, compared.goal.unit()));
-            let own = [Some(&compared.tmd), Some(&cost.tmd), compared.ssvi.as_ref(), cost.ssvi.as_ref()];
+            let candidates =
+                [Some(&compared.tmd), Some(&cost.tmd), compared.ssvi.as_ref(), cost.ssvi.as_ref()];
             [format!("{} at most {allowed}", cost.constraint.name())]
                 .into_iter()
-                .chain(own.map(value))
+                .chain(candidates.map(value))
                 .collect()
         })
         .collect();
@@ -124,7 +125,7 @@ fn over(requirements: &Requirements, compared: &Comparison) -> Section {
     ("band", "Over the band", vec![figure])
 }
 
-/// Frequencies of a curve in closed form, and of one of runs.
+/// Number of frequencies of a curve in closed form, and of one from runs.
 const FINE: usize = 401;
 const RUNS: usize = 101;
 
@@ -139,8 +140,8 @@ const fn line(what: What) -> Stroke {
 /// A frequency, rad/s, and the quantities there, in SI units.
 type Curve = Vec<(f64, PerMeasure<f64>)>;
 
-/// Every quantity of a candidate at frequencies of the band (rad/s), those of its largest values among them, once its motion is steady; the
-/// largest for every k1 that there may be. NaN where a run fails.
+/// Every quantity of a candidate in steady motion at frequencies of the band, rad/s, including those of its largest values; the largest
+/// over all k1. NaN where a run fails.
 fn curve(of: &Candidate, [from, to]: [f64; 2]) -> Curve {
     let study = &of.study;
     let closed = study.goal().objective.is_steady();
@@ -150,8 +151,8 @@ fn curve(of: &Candidate, [from, to]: [f64; 2]) -> Curve {
     let mut all: Vec<f64> = even.chain(peaks.filter(|omega| (from..=to).contains(omega))).collect();
     all.sort_by(f64::total_cmp);
     all.dedup();
-    let own = || vec![study.scene.primary.stiffness.get()];
-    let stiffnesses = study.objective().k1.map_or_else(own, |k1| k1.samples());
+    let nominal = || vec![study.scene.primary.stiffness.get()];
+    let stiffnesses = study.objective().k1.map_or_else(nominal, |k1| k1.samples());
     let none = PerMeasure::all(f64::NAN);
     let value = |omega: f64, k1: f64| {
         let Some(mut scene) = at(omega, study.scene) else { return none };
@@ -193,7 +194,7 @@ fn curves(requirements: &Requirements, compared: &Comparison, band: [f64; 2]) ->
         let scale = if number == 0.0 { 1.0 } else { number / largest };
         let scaled: Vec<f64> = all.iter().map(|value| scale * value).filter(|value| *value > 0.0).collect();
         let label = format!("{}, {name}", measure.name().replace('_', " "));
-        // What a wall feels is zero where nothing is struck.
+        // Quantities of the walls are zero without contact, so their axis is linear.
         let of_walls = measure.is_of_walls();
         let y =
             if of_walls { Axis::from_zero(label, scaled) } else { Axis::around(label, Scale::Log, scaled) };
@@ -239,14 +240,14 @@ const MM: f64 = 1e3;
 fn to_scale(of: &Candidate) -> Drawing {
     let stroke = MM * of.value(Measure::Stroke);
     let begin = MM * of.most().get(Measure::Stroke).value;
-    // Of a run, all of it: what moves before values count needs room, too.
+    // Under a shock or record the whole run: motion before values count needs room, too.
     let most = if of.is_transient() { of.most() } else { &of.steady };
     let motion = MM * most.get(Measure::Displacement).value;
     let walls = of
         .damper()
         .filter(|damper| damper.contact.is_some())
         .map(|damper| [-MM * damper.rest_distance.get(), MM * damper.clearance.get()]);
-    // Relative to the damper at rest; a wall that is far out of reach is not drawn.
+    // Relative to the damper at rest; a wall far out of reach is not drawn.
     let reach = 1.3 * begin.max(stroke).max(motion).max(1e-9);
     let near = |wall: f64| wall.abs() <= 1.6 * reach;
     let ends = walls.map_or([-reach, reach], |[left, right]| {
@@ -288,7 +289,7 @@ fn to_scale(of: &Candidate) -> Drawing {
     ));
     layers.push(bar(motion, (1.0, 1.2), GREEN, 0.9));
     layers.push(text((0.0, 1.55), format!("± {} mm", rounded(motion, 4))));
-    // The place at rest, but not through words.
+    // The rest position, interrupted where there is text.
     for (from, to) in [(0.75, 1.4), (1.75, 2.4), (2.8, 3.0)] {
         layers.push(Layer::line([(0.0, from), (0.0, to)], Stroke::new(BLACK, 0.7, Dash::Dots)));
     }

@@ -1,4 +1,4 @@
-//! From requirements as given to requirements in SI units: what is missing, contradicts itself or cannot be is refused with what to give.
+//! Converts requirements as given to SI units; missing, contradictory or impossible ones are refused with advice on what to give.
 
 use super::driving::Driving;
 use super::history;
@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 
 /// The band where none is given: natural frequency ± this share.
 const BAND: f64 = 0.1;
-/// A share without `%` from here on is taken for a slip: 0.5 % is meant, not half.
+/// A share without `%` of at least this is taken for a slip: 0.5 % is meant, not half.
 const SLIP: f64 = 0.2;
 
 impl Specification {
@@ -28,7 +28,9 @@ fn checked(specification: &Specification) -> Result<Requirements, Error> {
     let natural = (k1 / m1).sqrt();
     let c1 = damping(specification, 2.0 * m1 * natural)?;
     let (driving, hertz) = match history::given(specification)? {
-        Some((forcing, after)) => (Driving::History { forcing, after }, by_f1(specification).unwrap_or("Hz")),
+        Some((forcing, after)) => {
+            (Driving::History { forcing, after }, unit_of_f1(specification).unwrap_or("Hz"))
+        }
         None => {
             let amplitude = driving(specification)?;
             let (band, hertz) = band(specification, natural)?;
@@ -76,7 +78,7 @@ fn positive(typed: &Typed, field: &str, units: &[Unit]) -> Result<f64, Error> {
     }
 }
 
-/// A share below `most`; one without `%` that is taken for a slip is refused.
+/// A share below `most`; one without `%` of at least [`SLIP`] is refused.
 fn share(typed: &Typed, field: &str, most: f64) -> Result<f64, Error> {
     let value = positive(typed, field, unit::SHARE)?;
     let (text, percent) = (typed.text.trim(), rounded(100.0 * value, 4));
@@ -173,7 +175,7 @@ fn damping(specification: &Specification, critical: f64) -> Result<f64, Error> {
     Ok(c1)
 }
 
-/// What moves the structure.
+/// The harmonic excitation: its kind and amplitude.
 fn driving(specification: &Specification) -> Result<(Amplitude, f64), Error> {
     let all = [
         ("force", &specification.force, Amplitude::Force),
@@ -196,27 +198,28 @@ fn driving(specification: &Specification) -> Result<(Amplitude, f64), Error> {
     }
 }
 
-/// The unit of frequency in a text.
-fn told(text: &str) -> Option<&'static str> {
+/// The unit of frequency that a text contains.
+fn frequency_unit(text: &str) -> Option<&'static str> {
     unit::FREQUENCY.iter().rev().find(|(name, _)| text.contains(name)).map(|(name, _)| *name)
 }
 
-/// The unit of the natural frequency.
-fn by_f1(specification: &Specification) -> Option<&'static str> {
-    specification.f1.as_ref().map(|typed| told(&typed.text).unwrap_or("Hz"))
+/// The unit in which the natural frequency is given.
+fn unit_of_f1(specification: &Specification) -> Option<&'static str> {
+    specification.f1.as_ref().map(|typed| frequency_unit(&typed.text).unwrap_or("Hz"))
 }
 
-/// The band, rad/s, and the unit in which frequencies are told.
+/// The band, rad/s, and the unit in which frequencies are reported.
 fn band(specification: &Specification, natural: f64) -> Result<([f64; 2], &'static str), Error> {
-    let by_f1 = by_f1(specification);
+    let unit_of_f1 = unit_of_f1(specification);
     let Some(typed) = &specification.band else {
-        return Ok(([(1.0 - BAND) * natural, (1.0 + BAND) * natural], by_f1.unwrap_or("Hz")));
+        return Ok(([(1.0 - BAND) * natural, (1.0 + BAND) * natural], unit_of_f1.unwrap_or("Hz")));
     };
     let text = typed.text.replace("+-", "±").replace("+/-", "±");
-    let own = told(&text);
+    let given = frequency_unit(&text);
     let number = |text: &str| {
-        // A number takes the unit of its neighbour: 1.8..2.2Hz.
-        let text = if is_bare(text) { format!("{text} {}", own.unwrap_or("rad/s")) } else { text.to_owned() };
+        // A bare number takes the unit of the other end: 1.8..2.2Hz.
+        let text =
+            if is_bare(text) { format!("{text} {}", given.unwrap_or("rad/s")) } else { text.to_owned() };
         unit::read(&text, unit::FREQUENCY).map_err(|problem| typed.refused("band", problem))
     };
     let ends = if let Some((middle, width)) = text.split_once('±') {
@@ -241,9 +244,9 @@ fn band(specification: &Specification, natural: f64) -> Result<([f64; 2], &'stat
         return Err(typed.refused("band", problem));
     };
     let [from, to] = ends;
-    let unit = own.or(by_f1).unwrap_or("rad/s");
+    let unit = given.or(unit_of_f1).unwrap_or("rad/s");
     if from > 0.0 && from < to && to.is_finite() {
-        return without_unit(typed, own, ends, natural).map_or(Ok((ends, unit)), Err);
+        return wrong_unit(typed, given, ends, natural).map_or(Ok((ends, unit)), Err);
     }
     let [low, high] = [from.min(to), from.max(to)].map(|end| rounded(end / radians(unit), 6));
     let problem = if from > to && to > 0.0 {
@@ -254,8 +257,8 @@ fn band(specification: &Specification, natural: f64) -> Result<([f64; 2], &'stat
     Err(typed.refused("band", problem))
 }
 
-/// That a band without a unit, which is in rad/s, holds the natural frequency only if it is meant in Hz.
-fn without_unit(typed: &Typed, unit: Option<&str>, [from, to]: [f64; 2], natural: f64) -> Option<Error> {
+/// The error of a band without a unit, taken in rad/s, that would contain the natural frequency only in Hz.
+fn wrong_unit(typed: &Typed, unit: Option<&str>, [from, to]: [f64; 2], natural: f64) -> Option<Error> {
     let holds = |size: f64| (size * from..=size * to).contains(&natural);
     if unit.is_some() || holds(1.0) || !holds(TAU) {
         return None;
@@ -300,7 +303,7 @@ fn mass(specification: &Specification, m1: f64) -> Result<f64, Error> {
     Ok(mass)
 }
 
-/// Names as people write them: `ground-force`.
+/// The quantity of a name, which may be hyphenated: `ground-force`.
 fn measure(name: &str) -> Option<Measure> {
     let name = name.replace('-', "_");
     Measure::ALL.into_iter().find(|measure| measure.name() == name)
@@ -319,7 +322,7 @@ fn limits(specification: &Specification) -> Result<(Limits, Option<f64>), Error>
     let (mut limits, mut k2) = (Limits::default(), None);
     for (name, typed) in specification.all_limits()? {
         let field = format!("limit {name}");
-        let own = |limit: Limit| match limit {
+        let units = |limit: Limit| match limit {
             Limit::Of(measure) => measure.units(),
             Limit::Cavity => unit::LENGTH,
         };
@@ -333,15 +336,15 @@ fn limits(specification: &Specification) -> Result<(Limits, Option<f64>), Error>
             let problem = format!("there is no quantity \"{name}\": give one of {all}, cavity, k2");
             return Err(typed.refused("limit", problem));
         };
-        let value = positive(&typed, &field, own(limit))?;
+        let value = positive(&typed, &field, units(limit))?;
         limits = limits.with(limit, Positive::new(value)?);
     }
     Ok((limits, k2))
 }
 
-/// Young's modulus (N/m²) and Poisson's ratio of materials that walls are named by.
+/// Materials of walls: name, Young's modulus (N/m²), Poisson's ratio.
 const MATERIALS: [(&str, f64, f64); 2] = [("steel", STEEL, 0.3), ("rubber", 5e6, RUBBER)];
-/// Poisson's ratio of the damper's surfaces where no material is named: that of the paper's.
+/// Poisson's ratio of the damper's surfaces without a named material: the paper's.
 const RUBBER: f64 = 0.4;
 
 /// The walls: radius and Young's modulus or material of the damper's surfaces, and the restitution of a contact.

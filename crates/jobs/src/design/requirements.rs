@@ -1,6 +1,6 @@
-//! What is asked of a design, in SI units, and the studies that follow from it.
+//! The requirements on a design, in SI units, and the studies derived from them.
 //!
-//! Bounds and grids scale with the structure: stiffnesses and dampings with those of Den Hartog's damper, gaps with the amplitude of the
+//! Bounds and grids scale with the structure: stiffness and damping with those of Den Hartog's damper, gaps with the amplitude of the
 //! structure without a damper.
 
 use super::driving::Driving;
@@ -17,7 +17,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 
-/// What is asked of a design. SI units.
+/// The requirements on a design. SI units.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Requirements {
     /// Mass of the structure, kg.
@@ -26,26 +26,26 @@ pub struct Requirements {
     pub k1: f64,
     /// Its damping, N·s/m.
     pub c1: f64,
-    /// What moves it.
+    /// Its excitation.
     #[serde(flatten)]
     pub driving: Driving,
-    /// The unit in which frequencies are told: Hz, rpm or rad/s.
+    /// The unit in which frequencies are reported: Hz, rpm or rad/s.
     pub frequencies: &'static str,
     /// Mass of the damper, kg.
     pub mass: f64,
-    /// What is made small.
+    /// The quantity to minimise.
     pub goal: Measure,
-    /// The largest value allowed of quantities.
+    /// The largest allowed values of quantities.
     pub limits: Limits,
     /// Largest stiffness of the damper's spring, N/m.
     pub k2_max: Option<f64>,
-    /// Share by which k1 may be off: largest values are those over all k1 within it, and limits hold for them.
+    /// Share by which k1 may be off: values and limits are for the worst k1 within it.
     pub k1_error: Option<f64>,
     /// The dampers that are compared.
     pub dampers: Dampers,
     /// The walls of an SSVI NES.
     pub wall: Option<Wall>,
-    /// Whether the structure is one mode of many: what moves the ground moves them all, and all push on it.
+    /// Whether the structure is one of several modes, all of which the ground excites and all of which load it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub of_mode: bool,
 }
@@ -54,9 +54,9 @@ pub struct Requirements {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Dampers {
-    /// The TMD alone.
+    /// The TMD only.
     Tmd,
-    /// The SSVI NES, beside the TMD from which its search begins.
+    /// The SSVI NES, and the TMD from which its search starts.
     Ssvi,
     /// Both, and the better one is recommended.
     Both,
@@ -76,7 +76,7 @@ impl Dampers {
     }
 }
 
-/// The damper's surfaces at its walls, which are of steel.
+/// The damper's surfaces at the walls; the walls are of steel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Wall {
     /// Radius, m.
@@ -88,12 +88,12 @@ pub struct Wall {
     /// Poisson's ratio.
     #[serde(rename = "nu")]
     pub poisson: f64,
-    /// Restitution of a contact at every speed; none loses nothing.
+    /// Restitution of a contact at every speed; none for lossless contacts.
     #[serde(rename = "e", skip_serializing_if = "Option::is_none")]
     pub restitution: Option<f64>,
 }
 
-/// A limit that is asked for.
+/// A required limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Constraint {
     /// On a quantity.
@@ -120,22 +120,23 @@ impl Constraint {
     }
 }
 
-/// Periods of the natural frequency before a run of an SSVI NES counts, and all of them.
+/// Natural periods before the window of a run of an SSVI NES, and in all.
 const PASSED: f64 = 50.0;
 const PERIODS: f64 = 100.0;
-/// Stiffnesses of a structure whose k1 may be off; of a TMD in closed form the largest value is searched between them, too.
+/// Number of stiffnesses of a structure whose k1 may be off; for a TMD in closed form peaks between them are searched, too.
 const STIFFNESSES: usize = 17;
-/// Largest spring and dashpot of a TMD, in those of Den Hartog's: they hold the mass to the structure, so that its stroke is as small as may be.
+/// Upper bounds of the spring and dashpot of a TMD, as multiples of Den Hartog's: large enough to lock the mass to the structure, for the
+/// smallest stroke.
 const STIFFEST: f64 = 200.0;
-const HELD: f64 = 1e6;
-/// A structure with less damping moves farther in proportion, at most so many times, and so far gaps may go.
+const LOCKED: f64 = 1e6;
+/// Below this damping ratio the upper bound of the gaps grows in inverse proportion to it, at most by the factor [`MOST_ROOM`].
 const HARDLY_DAMPED: f64 = 0.005;
 const MOST_ROOM: f64 = 5.0;
-/// Damping that an undamped structure counts as when gaps and tolerances are scaled.
+/// Least damping ratio of the structure that scales gaps and tolerances.
 const LEAST_DAMPING: f64 = 0.01;
 
 impl Requirements {
-    /// Refuses what one mode of many does not tell.
+    /// Refuses requirements that a single mode cannot answer.
     pub(super) fn check_mode(&self) -> Result<(), Error> {
         if !self.of_mode {
             return Ok(());
@@ -157,7 +158,7 @@ impl Requirements {
         Ok(())
     }
 
-    /// The limits that are asked for, in the order of the catalogue.
+    /// The required limits, in the order of the catalogue.
     pub fn constraints(&self) -> Vec<Constraint> {
         self.limits.set().map(Constraint::Of).chain(self.k2_max.map(|_| Constraint::K2)).collect()
     }
@@ -175,7 +176,7 @@ impl Requirements {
         }
     }
 
-    /// The same without one limit.
+    /// The requirements without one limit.
     #[must_use]
     pub fn without(&self, constraint: Constraint) -> Self {
         let mut free = self.clone();
@@ -197,7 +198,7 @@ impl Requirements {
         (self.k1 / self.m1).sqrt()
     }
 
-    /// The structure; an undamped one counts as damped where `damped`.
+    /// The structure; with `damped`, its damping is at least [`LEAST_DAMPING`].
     fn primary(&self, damped: bool) -> Result<Primary, Error> {
         let least = if damped { 2.0 * LEAST_DAMPING * self.m1 * self.natural_frequency() } else { 0.0 };
         Ok(Primary {
@@ -207,12 +208,12 @@ impl Requirements {
         })
     }
 
-    /// The band of a harmonic in multiples of its natural frequency.
+    /// The band of a harmonic in multiples of the natural frequency; `[1, 1]` for a history.
     fn driven(&self) -> [f64; 2] {
         self.driving.band().map_or([1.0; 2], |band| over_natural(band, self.natural_frequency()))
     }
 
-    /// What moves it; a harmonic at the frequency of the band that is nearest to its own.
+    /// The forcing; a harmonic has the frequency of the band nearest to the natural one.
     fn forcing(&self) -> Result<Forcing, Error> {
         self.driving.forcing(self.natural_frequency())
     }
@@ -222,8 +223,8 @@ impl Requirements {
         self.driving.run(self.period())
     }
 
-    /// Den Hartog's k2 (N/m) and c2 (N·s/m), the largest displacement (m) of the structure alone, steady over the band or in the run, and
-    /// the same of the goal.
+    /// Den Hartog's k2 (N/m) and c2 (N·s/m), and the largest displacement (m) and goal of the structure alone, steady over the band or in
+    /// the run.
     fn scales(&self) -> Result<([f64; 2], f64, f64), Error> {
         let (primary, forcing) = (self.primary(true)?, self.forcing()?);
         let formula = den_hartog(&primary, self.mass);
@@ -246,7 +247,7 @@ impl Requirements {
         let most = self.k2_max.unwrap_or(stiffest(STIFFEST) * k2);
         let softest = springs_for([0.05, 1.0], self.driven())[0];
         let axis = |from: f64, to: f64| json!({ "from": from, "to": to, "points": 21, "scale": "log" });
-        // A TMD touches nothing; of a cavity its stroke takes half.
+        // A TMD touches no wall; its stroke may take half of the cavity.
         let mut limits = self.limits;
         let half = limits.get(Limit::Cavity).map(|cavity| 0.5 * cavity);
         let stroke = Limit::Of(Measure::Stroke);
@@ -262,7 +263,7 @@ impl Requirements {
         let optimize = json!({
             "vary": ["k2", "c2"],
             "objective": self.objective(true),
-            "bounds": { "k2": [0, most], "c2": [0, HELD * c2] },
+            "bounds": { "k2": [0, most], "c2": [0, LOCKED * c2] },
             "limits": kept.into_iter().map(|limit| (limit.name().to_owned(), json!(limits.get(limit)))).collect::<serde_json::Map<_, _>>(),
             "surf": { "k2": axis(softest * k2.min(most), (stiffest(4.0) * k2).min(most)), "c2": axis(0.05 * c2, 20.0 * c2) },
             "refine": { "starts": 3, "scaled": true, "TolX": 1e-10, "TolFun": 1e-12 * size }
@@ -276,7 +277,7 @@ impl Requirements {
         let most = self.k2_max.unwrap_or(springs_for([1.0, 4.0], self.driven())[1] * k2);
         let axis = |from: f64, to: f64, scale: &str, points: u32| json!({ "from": from, "to": to, "points": points, "scale": scale });
         let stiffest = k2.min(most);
-        // Descents look at the whole range of a gap, so that it is no wider than it has to be.
+        // Descents explore the whole range of a gap, so it is kept no wider than necessary.
         let zeta = self.c1 / (2.0 * self.m1 * self.natural_frequency());
         let most_gap = reach * (HARDLY_DAMPED / zeta).clamp(1.0, MOST_ROOM);
         let mut limits = json!(self.limits);
@@ -304,7 +305,7 @@ impl Requirements {
         self.study("ssvi", damper, optimize)
     }
 
-    /// The goal over the band, or in the run under a shock or a record; for every k1 that there may be.
+    /// The objective over the band, or in the run under a shock or a record, and over all k1.
     fn objective(&self, steady: bool) -> Value {
         let mut objective = json!({ "quantity": self.goal });
         if let Some(error) = self.k1_error {
@@ -324,8 +325,8 @@ impl Requirements {
         objective
     }
 
-    /// The window of a damper with walls under a harmonic: as many periods of the structure before it as in it, and at least [`SLOWEST`] of the slowest
-    /// force.
+    /// The window of a damper with walls under a harmonic: as long as the time before it, in periods of the structure, and at least
+    /// [`SLOWEST`] periods of the slowest forcing.
     fn steady(&self) -> Window {
         let slowest = self.driving.band().map_or(0.0, |[from, _]| SLOWEST * TAU / from);
         let [from, length] = [PASSED, PERIODS - PASSED].map(|periods| (periods * self.period()).max(slowest));
@@ -337,7 +338,7 @@ impl Requirements {
         TAU / self.natural_frequency()
     }
 
-    /// The walls of the damper. Where none are given they are those of the paper on a similar structure.
+    /// The walls of the damper; if none are given, the paper's, scaled to the structure.
     pub fn contact(&self) -> Result<Surfaces, Error> {
         let mass = Positive::new(self.mass)?;
         let Some(Wall { radius, modulus, poisson, restitution }) = self.wall else {
@@ -345,14 +346,15 @@ impl Requirements {
             return Ok(Surfaces::for_motion(mass, self.natural_frequency(), reach)?);
         };
         let paper = Surfaces::for_mass(mass)?;
-        let (radius, own, steel) = (Positive::new(radius)?, Positive::new(modulus)?, Positive::new(STEEL)?);
+        let (radius, modulus, steel) =
+            (Positive::new(radius)?, Positive::new(modulus)?, Positive::new(STEEL)?);
         let poisson = PoissonRatio::new(poisson)?;
         let loss = restitution.map(Restitution::new).transpose()?.map_or(paper.loss, Loss::Restoring);
         let walls = Surfaces { radius, young_1: steel, young_3: steel, loss, ..paper };
-        Ok(Surfaces { young_2: own, young_4: own, poisson_2: poisson, poisson_4: poisson, ..walls })
+        Ok(Surfaces { young_2: modulus, young_4: modulus, poisson_2: poisson, poisson_4: poisson, ..walls })
     }
 
-    /// A study of 100 periods of the structure, the first half of which passes before maxima are taken, or of a shock or a record.
+    /// A study whose window is that of the shock or record, or [`Self::steady`].
     fn study(&self, name: &str, damper: Value, optimize: Value) -> Result<Study, Error> {
         let Window { from, to } = self.run().unwrap_or_else(|| self.steady());
         let study = json!({

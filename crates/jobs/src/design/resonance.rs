@@ -1,15 +1,17 @@
-//! The part of a wide band at which a damper with walls does its work: the samples of the whole say little of a narrow resonance between them.
+//! The part of a wide band around the resonance, where a damper with walls is effective: samples of the whole band may miss a narrow
+//! resonance.
 
 use retune_model::Positive;
 use retune_optim::{FrequencyBand, Response};
 use retune_study::Study;
 
-/// A band that goes farther from the resonance than by this factor is wide, and its part about it, in multiples of the natural frequency.
+/// A band that extends farther from the resonance than this factor is wide; and its part around the resonance, in multiples of the natural
+/// frequency.
 const WIDE: f64 = 2.0;
 const ABOUT: [f64; 2] = [0.8, 1.25];
 
-/// The study with the part of its band about the resonance of the structure, where the band goes far beyond; none of a narrow band, of one that leaves
-/// out the resonance, and of a steady motion in closed form.
+/// The study with its band restricted to the resonance of the structure; none for a narrow band, one that leaves out the resonance, or a
+/// steady motion in closed form.
 pub(super) fn about_resonance(study: &Study) -> Option<Study> {
     let (objective, primary) = (study.objective(), &study.scene.primary);
     let (band, natural) = (objective.omega?.of(primary), primary.natural_frequency());

@@ -1,8 +1,8 @@
-//! The designs as a table of numbers in SI units, and their rows computed again.
+//! The designs as a table of numbers in SI units, and the function that recomputes its rows.
 
 use super::candidate::{Candidate, What};
 use super::comparison::Comparison;
-use crate::again::{Row, Source};
+use crate::recompute::{Row, Source};
 use crate::resolved::Resolved;
 use crate::{Error, columns};
 use retune_model::{Measure, Parameter, Scene};
@@ -11,7 +11,7 @@ use retune_report::table::{Cell, Table};
 use retune_study::Study;
 use std::path::Path;
 
-/// What a candidate has of each quantity and, where there are frequencies, where: each with its column.
+/// The largest value of each quantity of a candidate and, under a harmonic, its frequency, each with its column.
 fn numbers(of: &Candidate, measures: &[Measure]) -> Vec<(String, f64)> {
     let one = |measure: &Measure| {
         let (name, need) = (measure.name(), of.steady.get(*measure));
@@ -23,18 +23,18 @@ fn numbers(of: &Candidate, measures: &[Measure]) -> Vec<(String, f64)> {
 
 /// All candidates under all limits, and the dampers without each of them.
 pub(super) fn table(compared: &Comparison) -> Table {
-    let told: Vec<Measure> = compared.measures().collect();
-    let numbers = |of: &Candidate| numbers(of, &told);
+    let reported: Vec<Measure> = compared.measures().collect();
+    let numbers = |of: &Candidate| numbers(of, &reported);
     let measures = numbers(&compared.none);
     let head = ["limits", "damper", "m2", "k2", "c2", "D", "C"];
     let all: Vec<&str> = head.into_iter().chain(measures.iter().map(|(name, _)| name.as_str())).collect();
     let mut table = columns::table(&all);
     let mut push = |limits: String, of: &Candidate| {
         let damper = of.damper();
-        let own =
+        let value_of =
             |parameter: Parameter| damper.and_then(|damper| parameter.of_damper(&damper)).unwrap_or(f64::NAN);
-        let design = Parameter::PAPER.map(|parameter| Cell::from(own(parameter)));
-        let first = cells![limits, of.what.name(), own(Parameter::M2)];
+        let design = Parameter::PAPER.map(|parameter| Cell::from(value_of(parameter)));
+        let first = cells![limits, of.what.name(), value_of(Parameter::M2)];
         table.push(
             [first, design.to_vec(), numbers(of).into_iter().map(|(_, value)| value.into()).collect()]
                 .concat(),
@@ -49,8 +49,8 @@ pub(super) fn table(compared: &Comparison) -> Table {
     table
 }
 
-/// The numbers of a row, computed again.
-pub(super) fn again(place: &Path, _name: &str) -> Result<Source, Error> {
+/// Recomputes the numbers of a row.
+pub(super) fn recompute(place: &Path, _name: &str) -> Result<Source, Error> {
     let studies = Resolved::read(place)?.studies()?;
     Ok(Source::new(move |row: Row| {
         let what = row.text("damper");
@@ -63,7 +63,8 @@ pub(super) fn again(place: &Path, _name: &str) -> Result<Source, Error> {
         };
         let of = if what == What::Ssvi.name() { What::Ssvi } else { What::Tmd };
         let found = Candidate::new(of, &Study { scene, ..study.clone() }).ok()?;
-        let told: Vec<Measure> = Measure::ALL.into_iter().filter(|measure| row.has(measure.name())).collect();
-        Some(numbers(&found, &told))
+        let reported: Vec<Measure> =
+            Measure::ALL.into_iter().filter(|measure| row.has(measure.name())).collect();
+        Some(numbers(&found, &reported))
     }))
 }

@@ -1,5 +1,5 @@
-//! The best TMD: the least of a closed form over spring and dashpot, by the descents of its peaks from the best of a small grid and from
-//! the formulas of textbooks. It takes milliseconds; under a shock or a record, whose runs are followed in time, seconds.
+//! The best TMD: the minimum of a closed form over spring and dashpot, by descents from the best points of a small grid and from textbook
+//! formulas. It takes milliseconds; under a shock or a record, with runs in time, seconds.
 
 use super::candidate::at_few_stiffnesses;
 use super::requirements::Requirements;
@@ -11,16 +11,17 @@ use retune_optim::{INFEASIBLE, Point, minimize};
 use retune_study::{Search, Study};
 use std::ops::ControlFlow;
 
-/// The springs and dashpots of the grid, in those of Den Hartog's; under a shock or a record a spring much stiffer may be best.
+/// Ranges of the spring and the dashpot of the grid, as multiples of Den Hartog's; under a shock or a record a much stiffer spring may be
+/// best.
 const TUNINGS: [[f64; 2]; 2] = [[0.05, 5.0], [0.05, 1e4]];
 const TUNINGS_IN_TIME: [[f64; 2]; 2] = [[0.05, 20.0], [0.05, 1e4]];
-/// Valleys of the grid in which descents begin.
+/// Number of valleys of the grid in which descents begin.
 const VALLEYS: usize = 3;
 
 /// A formula for an undamped structure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Formula {
-    /// Whose it is, and for what.
+    /// The author of the formula.
     pub name: &'static str,
     /// Its spring (N/m) and dashpot (N·s/m).
     pub k2: f64,
@@ -28,10 +29,10 @@ pub struct Formula {
 }
 
 impl Formula {
-    /// The formulas that fit what is asked, the best first. Where it is the displacement under a constant force or on a moving base, the force
-    /// on the ground under a constant force, or the acceleration on a base of constant acceleration: Nishihara and Asami's, which is exact
-    /// without damping of the structure, and Den Hartog's. Warburton's where it is the displacement under an imbalance, or the
-    /// acceleration under a constant force. Else Den Hartog's.
+    /// The formulas for the goal, the best first. Nishihara and Asami's, which is exact for an undamped structure, and Den Hartog's for the
+    /// displacement under a constant force or on a moving base, the force on the ground under a constant force, or the acceleration on a
+    /// base of constant acceleration. Warburton's for the displacement under an imbalance, or the acceleration under a constant force. Else
+    /// Den Hartog's.
     pub fn all(requirements: &Requirements, primary: &Primary) -> Vec<Self> {
         let driving = requirements.driving.amplitude();
         let imbalance = driving == Some(Amplitude::Imbalance);
@@ -49,7 +50,7 @@ impl Formula {
         };
         let den_hartog = || of("Den Hartog's formula", den_hartog);
         match (squared, exact) {
-            // Under a shock or a record none is for the goal: the best known one stands beside.
+            // No formula is for a shock or a record: the best known one is shown for comparison.
             _ if driving.is_none() => vec![den_hartog()],
             (true, _) => vec![of("Warburton's formula", warburton)],
             (_, true) => vec![of("Nishihara and Asami's formula", nishihara_asami), den_hartog()],
@@ -58,13 +59,13 @@ impl Formula {
     }
 }
 
-/// The best `[k2, c2]` of a TMD study under its limits: of designs that break some, the one that breaks them by the least. Under a shock or
-/// a record, of which there are no derivatives, a simplex takes the place of descents.
+/// The best `[k2, c2]` of a TMD study under its limits, or the one that violates them least. Under a shock or a record, where there are no
+/// derivatives, simplex searches replace descents.
 pub(super) fn best(study: &Study, formulas: &[Formula]) -> Result<[f64; 2], Error> {
     let search = study.search().map_err(Error::rule(study))?;
     let is_transient = study.scene.forcing.is_transient();
-    let sought = if is_transient { &at_few_stiffnesses(study) } else { study };
-    let objective = searched(sought, &search, &search.variables);
+    let searched_study = if is_transient { &at_few_stiffnesses(study) } else { study };
+    let objective = searched(searched_study, &search, &search.variables);
     let bounds = &search.options.bounds;
     let scales = den_hartog(&study.scene.primary, search.damper.mass.get());
     let within = |x: [f64; 2]| {
@@ -85,7 +86,7 @@ pub(super) fn best(study: &Study, formulas: &[Formula]) -> Result<[f64; 2], Erro
     };
     let ends: Vec<Point> = starts.par_iter().map(down).collect();
     let mut best = ends.into_iter().min_by(|a, b| a.value.total_cmp(&b.value));
-    // What keeps the limits at few stiffnesses may just break them at one between.
+    // A design that keeps the limits at few stiffnesses may just break them at one in between.
     if is_transient && study.objective().k1.is_some() {
         let whole = searched(study, &search, &search.variables);
         let breaks = |end: &Point| end.value < INFEASIBLE && whole.value(&end.x, f64::INFINITY) >= INFEASIBLE;
@@ -96,8 +97,8 @@ pub(super) fn best(study: &Study, formulas: &[Formula]) -> Result<[f64; 2], Erro
     Ok(best.and_then(|end| <[f64; 2]>::try_from(end.x).ok()).unwrap_or(scales))
 }
 
-/// What goes down where there are no derivatives, under a shock and a record: the end of the refinement of a search from a start; the start itself
-/// where none can begin there.
+/// The end of a simplex search from a start, for shocks and records, where there are no derivatives; the start itself if the search cannot
+/// begin there.
 pub(super) fn simplex(value: impl Fn(&[f64], f64) -> f64, search: &Search, start: &[f64]) -> Point {
     let found = minimize(value, start, search.options.clone(), |_| ControlFlow::Continue(()));
     found.map_or_else(

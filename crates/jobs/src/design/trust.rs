@@ -1,4 +1,4 @@
-//! Which of the ends of a search is compared, and how far a damper may be trusted.
+//! Selects the result of a search that is compared, and rates how far a damper can be trusted.
 
 use super::candidate::{Candidate, What, with_design};
 use super::ssvi;
@@ -7,13 +7,13 @@ use crate::{Error, Observer};
 use retune_model::Parameter;
 use retune_study::Study;
 
-/// Designs whose goal is larger by less than this share are nearly as good: of them the best certificate counts.
+/// Designs whose goal is larger by less than this share are nearly as good: among them the best certificate decides.
 const NEARLY: f64 = 0.15;
-/// At most so many are certified: a certificate with motions from other starts takes seconds.
+/// Most designs that are certified: a certificate with motions from other starts takes seconds.
 const JUDGED: usize = 2;
 
-/// The SSVI NES that the ends of a search are, the best first, each with the value of the search: those that can be run and strike, if only
-/// just after rest. Others are TMDs. Each is measured when it is asked for.
+/// The results of a search that can be run and strike a wall, if only in the transient from rest; others are TMDs. The best first, each
+/// with the value of the search; evaluated lazily.
 pub(super) fn striking<'a>(
     study: &'a Study,
     found: &'a ssvi::Ends,
@@ -28,7 +28,7 @@ pub(super) fn striking<'a>(
     found.ends.iter().filter_map(move |end| measured(end).transpose())
 }
 
-/// The first that keeps the limits on all samples, which the best on the few of a search need not; else the first.
+/// The first candidate that keeps the limits on all samples, since the best on the few samples of a search may not; else the first.
 pub(super) fn first_feasible(
     all: &mut dyn Iterator<Item = Result<(f64, Candidate), Error>>,
 ) -> Result<Option<(f64, Candidate)>, Error> {
@@ -43,7 +43,7 @@ pub(super) fn first_feasible(
     Ok(first)
 }
 
-/// How much a damper may be trusted: 0 of the best verdict.
+/// Rank of the verdict: 0 for the best, larger for less trust.
 pub(super) fn doubt(certificate: &Certificate) -> u8 {
     match certificate.judged.verdict {
         Some(Verdict::Robust) => 0,
@@ -54,13 +54,13 @@ pub(super) fn doubt(certificate: &Certificate) -> u8 {
     }
 }
 
-/// Whether all that is held against it is that small errors change it much, in a regular way: how much is known.
+/// Whether the only objection is sensitivity to small errors of a predictable motion, whose effect is known.
 pub(super) fn is_sensitive(certificate: &Certificate) -> bool {
     certificate.judged.verdict == Some(Verdict::Sensitive) && certificate.judged.predictable
 }
 
-/// The worst within 1 % of each parameter, of 95 in 100 neighbours, on more samples and of the motions from other starts: it may be a multiple of its own
-/// value, and still a small part of what it is with another damper.
+/// The largest value within 1 % of each parameter, of 95 % of the neighbours, on more samples, and of motions from other starts. It may be
+/// a multiple of the design's value and still far below that of another damper.
 pub(super) fn worst_nearby(certificate: &Certificate) -> f64 {
     let measured = &certificate.measured;
     let motion = measured.motions.as_ref().and_then(|motions| motions.largest.as_ref());
@@ -69,12 +69,12 @@ pub(super) fn worst_nearby(certificate: &Certificate) -> f64 {
     worst.fold(measured.neighbourhood.high, f64::max)
 }
 
-/// The certificate of a candidate, as far as seconds allow.
+/// The certificate of a candidate, limited to what takes seconds.
 pub(super) fn certified(study: &Study) -> Result<Certificate, Error> {
     if ssvi::is_lossy(&study.scene) { judge_in_seconds(study) } else { judge(study) }
 }
 
-/// Of designs that are nearly as good as the first the one with the best certificate; one that is certain ends the search.
+/// Among designs nearly as good as the first, the one with the best certificate; a robust one ends the search.
 pub(super) fn trusted(
     first: (f64, Candidate),
     others: impl Iterator<Item = Result<(f64, Candidate), Error>>,

@@ -1,4 +1,4 @@
-//! Requirements as a person gives them: on the command line, in a file, from Python. Each is a number in its SI unit, or a text with a unit.
+//! Requirements as given on the command line, in a file or from Python. Each is a number in its SI unit, or a text with a unit.
 
 use crate::Error;
 use retune_model::{Unit, unit};
@@ -12,7 +12,7 @@ use std::path::Path;
 pub struct Typed {
     /// As given.
     pub text: String,
-    /// The file it stands in; none of the command line.
+    /// The file it comes from; none for the command line.
     pub(super) file: Option<String>,
 }
 
@@ -38,7 +38,7 @@ impl TryFrom<Value> for Typed {
     }
 }
 
-/// What is asked of a design, as given. Nothing is checked yet: `requirements` does that.
+/// The requirements on a design as given; `requirements` checks them.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Specification {
@@ -65,15 +65,15 @@ pub struct Specification {
     pub shock: Option<Typed>,
     /// A file with a record, `quake.csv,unit=g`.
     pub record: Option<Typed>,
-    /// From when on largest values count under a shock or a record; by default from its beginning.
+    /// Time from which on largest values count under a shock or a record; by default its beginning.
     pub after: Option<Typed>,
     /// The frequencies of the forcing; by default those within 10 % of the natural frequency.
     pub band: Option<Typed>,
     /// Mass of the damper, or its share of the structure's.
     pub mass: Option<Typed>,
-    /// What is made small.
+    /// The quantity to minimise.
     pub goal: Option<Typed>,
-    /// The largest value allowed of quantities, by name.
+    /// The largest allowed values of quantities, by name.
     pub limits: Map<String, Value>,
     /// Largest stroke: a limit.
     pub stroke: Option<Typed>,
@@ -89,7 +89,7 @@ pub struct Specification {
     pub damper: Option<Typed>,
     /// The walls of an SSVI NES, `R=20mm,E=5MPa`, `R=20mm,rubber`, with `e=0.7` for a restitution.
     pub wall: Option<Typed>,
-    /// The file that all this stands in, if any.
+    /// The file that all this comes from, if any.
     #[serde(skip)]
     pub file: Option<String>,
 }
@@ -103,26 +103,26 @@ impl Specification {
         Ok(specification.within(&file))
     }
 
-    /// The same, said of a file in messages.
+    /// Marks all values as coming from a file, for messages.
     #[must_use]
     pub fn within(mut self, file: &str) -> Self {
         self.fields().into_iter().flatten().for_each(|typed| typed.file = Some(file.to_owned()));
         Self { file: Some(file.to_owned()), ..self }
     }
 
-    /// The same with what `other` gives in the place of its own.
+    /// Replaces values by those that `other` gives.
     #[must_use]
     pub fn with(mut self, other: Self) -> Self {
-        // One way to say a thing replaces the other.
-        let replaces = |own: &[&Option<Typed>]| own.iter().any(|typed| typed.is_some());
-        if replaces(&[&other.k1, &other.f1]) {
+        // Alternatives replace one another.
+        let any_given = |options: &[&Option<Typed>]| options.iter().any(|typed| typed.is_some());
+        if any_given(&[&other.k1, &other.f1]) {
             (self.k1, self.f1) = (None, None);
         }
-        if replaces(&[&other.c1, &other.zeta]) {
+        if any_given(&[&other.c1, &other.zeta]) {
             (self.c1, self.zeta) = (None, None);
         }
-        let harmonic = replaces(&[&other.force, &other.imbalance, &other.base, &other.base_acceleration]);
-        let in_time = replaces(&[&other.shock, &other.record]);
+        let harmonic = any_given(&[&other.force, &other.imbalance, &other.base, &other.base_acceleration]);
+        let in_time = any_given(&[&other.shock, &other.record]);
         if harmonic || in_time {
             (self.force, self.imbalance, self.base, self.base_acceleration) = (None, None, None, None);
             (self.shock, self.record) = (None, None);
@@ -171,7 +171,8 @@ impl Specification {
         ]
     }
 
-    /// The limits, each with its name: those of the file, then those as typed, which replace them. One place gives one limit of a quantity.
+    /// The limits with their names: those of the file, then those of the command line, which replace them. Each source may limit a quantity
+    /// only once.
     pub(super) fn all_limits(&self) -> Result<Vec<(String, Typed)>, Error> {
         let mut all = Vec::new();
         for (name, value) in &self.limits {
@@ -210,7 +211,7 @@ impl Specification {
 }
 
 impl Typed {
-    /// The error that this value of a field is.
+    /// The error for this value of a field.
     pub(super) fn refused(&self, field: &str, problem: impl Into<String>) -> Error {
         let place = match &self.file {
             Some(file) => format!("{file}: {}", field.replace("limit ", "limits.")),
@@ -219,7 +220,7 @@ impl Typed {
         Error::Requirement { place, problem: problem.into() }
     }
 
-    /// As a number in the SI unit.
+    /// The value in the SI unit.
     pub(super) fn number(&self, field: &str, units: &[Unit]) -> Result<f64, Error> {
         unit::read(&self.text, units).map_err(|problem| self.refused(field, problem))
     }

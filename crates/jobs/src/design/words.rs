@@ -1,4 +1,4 @@
-//! Numbers of a design as a person reads them.
+//! Numbers of a design in readable units.
 
 use super::candidate::Candidate;
 use super::driving::Driving;
@@ -8,7 +8,7 @@ use retune_model::{Measure, Parameter, unit};
 use retune_study::rounded;
 use std::f64::consts::TAU;
 
-/// A value in an SI unit, to four digits, in the unit in which it reads best.
+/// A value in an SI unit, to four digits, in a readable unit.
 pub(super) fn sized(value: f64, si: &'static str) -> String {
     if !value.is_finite() {
         return "no bound".to_owned();
@@ -17,7 +17,7 @@ pub(super) fn sized(value: f64, si: &'static str) -> String {
     format!("{} {unit}", rounded(number, 4))
 }
 
-/// Values in an SI unit, to four digits, in the unit in which the largest of them reads best.
+/// Values in an SI unit, to four digits, in a readable unit for the largest of them.
 pub(super) fn alike(values: &[f64], si: &'static str) -> Vec<String> {
     let largest = values.iter().copied().filter(|value| value.is_finite()).fold(0.0, f64::max);
     let (unit, number) = unit::readable(largest, si);
@@ -29,22 +29,22 @@ pub(super) fn alike(values: &[f64], si: &'static str) -> Vec<String> {
     values.iter().map(one).collect()
 }
 
-/// Words with numbers of all their digits in SI units, as a person reads them: `0.000306354 m` is `306.4 µm`, `0.6978 to 0.8342 m/s` are `697.8 to
+/// Rewrites numbers with all their digits in SI units in readable form: `0.000306354 m` to `306.4 µm`, `0.6978 to 0.8342 m/s` to `697.8 to
 /// 834.2 mm/s`.
 pub(super) fn legible(words: &str) -> String {
     let all: Vec<&str> = words.split(' ').collect();
     let number = |i: usize| all.get(i).and_then(|word| word.parse::<f64>().ok());
-    // Whole numbers, as of a percentage or a count, stay as they are; of a quantity those that are short.
+    // Whole numbers, such as counts and percentages, are kept, as are those of a quantity below 1e4.
     let broken = |i: usize| number(i).filter(|_| all[i].contains(['.', 'e']));
     let long = |i: usize| number(i).filter(|value| value.abs() >= 1e4).or_else(|| broken(i));
-    // A word that is a unit, and what stands behind it.
+    // The unit at word `i`, if it is one, whether it is `%`, and the punctuation after it.
     let unit = |i: usize| {
         let word = all.get(i).copied().unwrap_or_default();
         let unit = word.trim_end_matches([',', ';', '.', ')']);
         let known = Measure::ALL.into_iter().map(Measure::unit).find(|known| *known == unit);
         (known, unit == "%", &word[unit.len()..])
     };
-    let mut said: Vec<String> = Vec::new();
+    let mut readable: Vec<String> = Vec::new();
     let mut i = 0;
     while let Some(word) = all.get(i) {
         let upper = number(i + 2).filter(|_| all.get(i + 1) == Some(&"to"));
@@ -52,21 +52,21 @@ pub(super) fn legible(words: &str) -> String {
             (_, Some((low, high)), (Some(known), _, rest), _) => {
                 let both = alike(&[low, high], known);
                 let low = both[0].split(' ').next().unwrap_or_default();
-                said.push(format!("{low} to {}{rest}", both[1]));
+                readable.push(format!("{low} to {}{rest}", both[1]));
                 i += 4;
             }
             (Some(value), _, _, (Some(known), _, rest)) => {
-                said.push(format!("{}{rest}", sized(value, known)));
+                readable.push(format!("{}{rest}", sized(value, known)));
                 i += 2;
             }
             (_, _, _, (_, is_percent, _)) => {
                 let digits = if is_percent { 3 } else { 4 };
-                said.push(broken(i).map_or_else(|| (*word).to_owned(), |value| rounded(value, digits)));
+                readable.push(broken(i).map_or_else(|| (*word).to_owned(), |value| rounded(value, digits)));
                 i += 1;
             }
         }
     }
-    said.join(" ")
+    readable.join(" ")
 }
 
 /// An angular frequency, rad/s, in a unit.
@@ -114,9 +114,9 @@ pub(super) fn percent(share: f64) -> String {
     format!("{} %", rounded(100.0 * share, 3))
 }
 
-/// What was asked, broken into lines for the screen.
+/// The requirements in words, wrapped for the screen.
 pub(super) fn question(requirements: &Requirements) -> Vec<String> {
-    let broken = broken_at_spaces();
+    let broken = wrap_at_spaces();
     asked(requirements).iter().map(|line| textwrap::fill(line, &broken)).collect()
 }
 
@@ -139,7 +139,7 @@ pub(super) fn asked(requirements: &Requirements) -> Vec<String> {
     ]
 }
 
-/// What moves it.
+/// The excitation in words.
 fn moved(requirements: &Requirements) -> String {
     let (amplitude, band) = match &requirements.driving {
         Driving::Harmonic { amplitude, band } => (*amplitude, *band),
@@ -160,8 +160,8 @@ pub(super) fn limit(requirements: &Requirements, constraint: Constraint) -> Stri
     format!("{} at most {}", constraint.name(), sized(requirements.allowed(constraint), constraint.unit()))
 }
 
-/// Lines of at most 80 columns that are broken at spaces alone, so that no name of a file is.
-pub(super) fn broken_at_spaces() -> textwrap::Options<'static> {
+/// Wraps lines at 80 columns, at spaces only, so that file names stay whole.
+pub(super) fn wrap_at_spaces() -> textwrap::Options<'static> {
     textwrap::Options::new(80).subsequent_indent("  ").word_splitter(textwrap::WordSplitter::NoHyphenation)
 }
 

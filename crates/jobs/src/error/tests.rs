@@ -1,5 +1,5 @@
-//! The words of every error, beside each other in `words.txt`. A new one is refused by the compiler until it is listed here;
-//! `RETUNE_WORDS=write cargo test -p retune words` writes the file anew.
+//! The messages of all errors, collected in `words.txt`. A new one is refused by the compiler until it is listed here; `RETUNE_WORDS=write
+//! cargo test -p retune words` writes the file anew.
 
 use super::*;
 use crate::evaluate::LineError;
@@ -10,7 +10,7 @@ use retune_store::Error as StoreError;
 use retune_study::{Kind, StudyError};
 use std::io::ErrorKind;
 
-/// Checks that there is a sample of each variant; that all are named is up to the compiler.
+/// Checks that there is a sample of each variant; the compiler checks that all variants are listed.
 macro_rules! each {
     ($samples:expr, $kind:ident: $($variant:ident)*) => {{
         #[allow(dead_code, reason = "only the compiler reads it")]

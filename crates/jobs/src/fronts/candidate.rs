@@ -1,4 +1,4 @@
-//! A design of `fronts`, evaluated on the samples of the study of fronts, and its comparison with others.
+//! A design of `fronts`, evaluated on the samples of its plan, and its comparison with others.
 
 use crate::certify::Verdict;
 use crate::columns;
@@ -10,10 +10,10 @@ use retune_study::Sweep;
 use std::cmp::Ordering;
 use std::fmt::Display;
 
-/// E1max that differs by less than this share is the same.
+/// Values of E1max that differ by less than this share count as equal.
 pub const SAME: f64 = 0.01;
 
-/// The verdict of a design that a descent found, until it is judged.
+/// The verdict of a design until it is certified.
 pub(super) const CONTINUED: &str = "not certified";
 
 /// A damper under a bound.
@@ -37,14 +37,14 @@ pub(super) fn at_most(sweep: Sweep, bound: impl Display) -> String {
     format!("{} at most {bound} {}", sweep.name(), sweep.unit())
 }
 
-/// A design, evaluated on the samples of the study of fronts.
+/// A design, evaluated on the samples of the plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
     pub damper: usize,
     pub at: Design,
     /// The worst E1max over the band, J.
     pub e1_max: f64,
-    /// The same on the samples of the second evaluation, J, if there was one.
+    /// The worst E1max on the finest samples, J, if it was evaluated on them.
     pub checked: Option<f64>,
     /// The largest stroke (spring deflection |x2 - x1 - D|) in any run, m.
     pub stroke: f64,
@@ -53,17 +53,17 @@ pub struct Candidate {
     pub verdict: &'static str,
     /// The reason for it, if it has a certificate.
     pub reason: String,
-    /// What it needs and what the structure does, if it has a certificate.
+    /// Its largest values and those of the structure, if it has a certificate.
     pub needs: Option<Largest>,
 }
 
 impl Candidate {
-    /// By how much it is beyond a bound, as a share of it.
+    /// The excess over a bound, as a share of it; 0 if it keeps the bound.
     pub fn excess(&self, Under { sweep, bound, .. }: Under) -> f64 {
         (self.reached(sweep) / bound - 1.0).max(0.0)
     }
 
-    /// Whether it is of the damper and keeps the bound.
+    /// Whether it belongs to the damper and keeps the bound.
     pub fn keeps(&self, under: Under) -> bool {
         self.damper == under.damper && self.excess(under) == 0.0
     }
@@ -77,33 +77,33 @@ impl Candidate {
         }
     }
 
-    /// The worst E1max over the band on the finest samples that it was looked at on, J.
+    /// The worst E1max over the band on the finest samples evaluated, J.
     pub fn known(&self) -> f64 {
         self.checked.unwrap_or(self.e1_max)
     }
 
-    /// Whether E1max rises on more samples by more than what is the same.
+    /// Whether E1max on the finest samples is larger by more than [`SAME`].
     pub fn rises(&self) -> bool {
         self.checked.is_some_and(|checked| checked > (1.0 + SAME) * self.e1_max)
     }
 
-    /// Whether its certificate says that other starts than rest lead to much more.
+    /// Whether, by its certificate, starts other than rest lead to much larger values.
     pub fn is_unsafe(&self) -> bool {
         self.verdict == Verdict::FromRest.name()
     }
 
-    /// Whether it is of the same damper and each parameter is within a twentieth, or a centimetre.
+    /// Whether it belongs to the same damper and each parameter differs by at most 5 % or 0.01 SI units.
     pub fn is_nearly(&self, other: &Self) -> bool {
         let near = |parameter: Parameter| {
             let [a, b] = [self, other].map(|design| design.at.get(parameter));
-            // A gap is left out where there is no wall, anything else where it is that of the study.
+            // A gap is NaN where there is no wall, any other parameter where it is the study's.
             let same = if parameter.is_gap() { a.is_nan() && b.is_nan() } else { a.is_nan() || b.is_nan() };
             same || (a - b).abs() <= (0.05 * a.abs().max(b.abs())).max(0.01)
         };
         self.damper == other.damper && Parameter::VARIED.into_iter().all(near)
     }
 
-    /// Whether it dominates `other`: is as good in E1max, stroke, force and k2, and better in one of them.
+    /// Whether it dominates `other`: no worse in E1max, stroke, force and k2, and better in one of them.
     pub fn dominates(&self, other: &Self) -> bool {
         let all = |design: &Self| [design.e1_max, design.stroke, design.force, design.at.get(Parameter::K2)];
         let pairs = || all(self).into_iter().zip(all(other));
@@ -116,14 +116,14 @@ impl Candidate {
         [&["E1max", "E1max_check"], &*columns::symbols(parameters), &reached].concat()
     }
 
-    /// Its cells there.
+    /// Its cells in such a table.
     pub fn cells(&self, parameters: &[Parameter]) -> Vec<Cell> {
         let design = columns::cells_of(&self.at, parameters);
         [cells![self.e1_max, self.checked], design, cells![self.stroke, self.force]].concat()
     }
 }
 
-/// The design that keeps a bound first, then that which is beyond it by less.
+/// Orders designs by their excess over a bound, then by E1max.
 pub fn by_excess(a: &Candidate, b: &Candidate, under: Under) -> Ordering {
     a.excess(under).total_cmp(&b.excess(under)).then(a.known().total_cmp(&b.known()))
 }

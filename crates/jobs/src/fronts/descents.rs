@@ -1,10 +1,10 @@
-//! The descents of `fronts`: from each place that a search came to, and from the best design under one bound under the bounds beside it.
+//! The descents of `fronts`: from each basin that a search found, and from the best design under a bound with the neighbouring bounds.
 //!
-//! A search that looks at few frequencies finds designs that are good at those alone, and a simplex stops short of a kink, where several
-//! peaks are equally high. So the slope is followed down on finer samples ([`retune_optim::minimax`]), and every end is looked at on the
-//! samples of the study of fronts. The best under a bound is then a start under the bounds beside it; when that brings nothing more, the best
-//! are followed down once more from places about them, on the finer samples, and places scattered about them and on sides of the box are looked
-//! at; and all this as long as it brings anything anywhere. The tasks of a round are independent of each other, so that every thread has work.
+//! A search on few frequencies finds designs that are good only there, and a simplex stops short of a kink, where several peaks are equally
+//! high. So descents follow on finer samples ([`retune_optim::minimax`]), and each end is evaluated on the samples of the plan. The best
+//! design under a bound is then a start under the neighbouring bounds. When that gains nothing more, descents start from points around the
+//! best designs and on the samples of the plan, and points scattered around them and on sides of the box are evaluated. All this is
+//! repeated until nothing is gained. The tasks of a round are independent, so that every thread has work.
 
 use super::candidate::{Candidate, Under};
 use super::designs::Fronts;
@@ -20,24 +20,24 @@ use retune_study::{Study, Sweep, counted};
 
 /// Samples of a descent, as a multiple of those of its search.
 const FINER: usize = 4;
-/// A design touches a bound if it reaches this share of it.
-const TOUCHES: f64 = 0.97;
-/// E1max that is lower by this share is a gain.
+/// A bound is active if a design reaches this share of it.
+const ACTIVE: f64 = 0.97;
+/// Relative decrease of E1max that counts as a gain.
 const GAIN: f64 = 1e-3;
 
-/// A descent that is to be made, or a design that is to be looked at.
+/// A descent to make, or a design to evaluate.
 #[derive(Clone, PartialEq)]
 pub(super) struct Task {
     under: Under,
     start: PerVariable<f64>,
     samples: usize,
-    /// The design itself is kept if it has no more than this, J, and keeps the limits; there is no descent.
+    /// If given, there is no descent: the design itself is kept if E1max is at most this, J, and it keeps the limits.
     most: Option<f64>,
 }
 
 impl Task {
-    /// The design at its end, by the objective and within the bounds of a study; none where there is no way down. The journal keeps what is
-    /// evaluated.
+    /// The design at the end of the task, by the objective and within the bounds of a study; none if there is none. The journal keeps its
+    /// values.
     fn end(&self, mut study: Study, journal: &Journal) -> Result<Option<Design>, Error> {
         let Self { under, start, samples, most } = self;
         if let Some(optimize) = &mut study.optimize {
@@ -48,25 +48,29 @@ impl Task {
         }
         let search = study.search().map_err(Error::rule(&study))?;
         let Some(at) = search.given.first() else { return Ok(None) };
-        let of = searched(&study, &search, &search.variables);
+        let objective = searched(&study, &search, &search.variables);
         let stage = format!("{} {samples}", under.name());
         let end = if let Some(most) = *most {
             let value = || {
-                let (height, _) = of.height_and_runs(at, most);
+                let (height, _) = objective.height_and_runs(at, most);
                 if height.violation > 0.0 { f64::MAX } else { height.worst }
             };
             (journal.value(&stage, at, most, value, |_| ()) <= most).then(|| at.clone())
         } else {
-            Some(descend(&of, &search, at, journal, &stage).end.x)
+            Some(descend(&objective, &search, at, journal, &stage).end.x)
         };
-        let damper = end.and_then(|end| of.damper(&end).ok());
+        let damper = end.and_then(|end| objective.damper(&end).ok());
         Ok(damper.map(|damper| Design::of_varied(&damper, &search.variables)))
     }
 }
 
 impl Fronts {
-    /// Makes descents, and then those that they give reason for, until nothing is gained.
-    pub(super) fn go_down(&mut self, first: Vec<Task>, searches: &Searches) -> Result<(), Error> {
+    /// Makes descents, and further ones where they gained, until nothing is gained or the plan's rounds are over.
+    pub(super) fn descend_until_no_gain(
+        &mut self,
+        first: Vec<Task>,
+        searches: &Searches,
+    ) -> Result<(), Error> {
         let bounds = self.all();
         let (mut tasks, mut done) = (first, Vec::new());
         let mut followed: Vec<Option<Candidate>> = vec![None; bounds.len()];
@@ -77,7 +81,7 @@ impl Fronts {
                 for (under, followed) in bounds.iter().zip(&mut followed) {
                     let Some(best) = self.best(*under) else { continue };
                     if gains(&best, followed.as_ref(), *under) {
-                        tasks.extend(self.once_more(&best, *under, followed.is_none()));
+                        tasks.extend(self.refine_best(&best, *under, followed.is_none()));
                         *followed = Some(best);
                     }
                 }
@@ -88,7 +92,7 @@ impl Fronts {
             let before: Vec<Option<Candidate>> = bounds.iter().map(|under| self.best(*under)).collect();
             let found = self.ends(&tasks, searches)?;
             self.designs.extend(found);
-            let mut said = format!("round {round}: {}", counted(tasks.len() as u64, "descent"));
+            let mut line = format!("round {round}: {}", counted(tasks.len() as u64, "descent"));
             done.append(&mut tasks);
             for (under, before) in bounds.iter().zip(before) {
                 let Some(best) = self.best(*under) else { continue };
@@ -97,18 +101,18 @@ impl Fronts {
                     let (name, bound, unit) = (under.sweep.name(), under.bound, under.sweep.unit());
                     let before =
                         before.map_or_else(String::new, |before| format!("{:.2} to ", before.e1_max));
-                    said += &format!("; {name} {bound} {unit}: {before}{:.2} J", best.e1_max);
+                    line += &format!("; {name} {bound} {unit}: {before}{:.2} J", best.e1_max);
                 }
                 if gains || round == 1 {
-                    tasks.extend(self.beside(&best, *under));
+                    tasks.extend(self.with_neighbours(&best, *under));
                 }
             }
-            searches.watch.log(&said)?;
+            searches.watch.log(&line)?;
         }
         Ok(())
     }
 
-    /// The ends of descents that keep a value.
+    /// The ends of tasks that can be evaluated.
     fn ends(&self, tasks: &[Task], searches: &Searches) -> Result<Vec<Candidate>, Error> {
         let ends = in_a_stage((searches.watch, "descents"), tasks, |task| {
             let end = task.end(self.under(task.under, Vec::new())?, searches.journal())?;
@@ -118,16 +122,16 @@ impl Fronts {
         Ok(ends?.into_iter().flatten().collect())
     }
 
-    /// The descents from a design under a bound.
+    /// The descents from a design under a bound, on finer samples.
     pub(super) fn descents(&self, at: &Design, under: Under) -> Vec<Task> {
         let Some(optimize) = self.optimize(under) else { return Vec::new() };
         let samples = optimize.objective.omega.map_or(1, |band| FINER * (band.samples - 1) + 1);
         starts(at, &optimize).into_iter().map(|start| Task { under, start, samples, most: None }).collect()
     }
 
-    /// The descents from the best design under a bound on the samples of the study of fronts, and places scattered about it; the first time also
-    /// the descents from places about it, and places on sides of the box.
-    fn once_more(&self, best: &Candidate, under: Under, first: bool) -> Vec<Task> {
+    /// Descents from the best design under a bound on the samples of the plan, and points scattered around it; the first time also descents
+    /// from points around it, and points on sides of the box.
+    fn refine_best(&self, best: &Candidate, under: Under, first: bool) -> Vec<Task> {
         let optimize = self.optimize(under).filter(|_| !self.is_steady(under.damper));
         let Some(optimize) = optimize else { return Vec::new() };
         let samples = self.plan.said.samples;
@@ -145,24 +149,25 @@ impl Fronts {
         tasks
     }
 
-    /// The descents from the best design under a bound under the bounds beside it.
-    fn beside(&self, best: &Candidate, from: Under) -> Vec<Task> {
+    /// Descents from the best design under a bound, with the neighbouring bounds.
+    fn with_neighbours(&self, best: &Candidate, from: Under) -> Vec<Task> {
         if self.is_steady(from.damper) {
             return Vec::new();
         }
         let bounds = self.plan.values(from.sweep);
-        let Some(own) = bounds.iter().position(|bound| *bound == from.bound) else { return Vec::new() };
-        let beside = [own.checked_sub(1), Some(own + 1)].into_iter().flatten().filter_map(|i| bounds.get(i));
+        let Some(position) = bounds.iter().position(|bound| *bound == from.bound) else { return Vec::new() };
+        let neighbours =
+            [position.checked_sub(1), Some(position + 1)].into_iter().flatten().filter_map(|i| bounds.get(i));
         let descents = |&bound: &f64| {
             let under = Under { bound, ..from };
             start(best, under, from.bound).map(|at| self.descents(&at, under))
         };
-        beside.filter_map(descents).flatten().collect()
+        neighbours.filter_map(descents).flatten().collect()
     }
 }
 
-/// Where the best design under the bound beside it is worth a descent under this one: a tighter bound that it breaks, or a looser one if it
-/// touches its own, a spring then with the same share of the bound. Otherwise it is as good under both.
+/// The start under a bound from the best design under the neighbouring bound `from`: for a tighter bound if the design breaks it, for a
+/// looser one if its bound is active, with k2 scaled to the new bound. Otherwise none, since the design is as good under both.
 fn start(best: &Candidate, under: Under, from: f64) -> Option<Design> {
     let reached = best.reached(under.sweep);
     if under.bound < from {
@@ -173,10 +178,10 @@ fn start(best: &Candidate, under: Under, from: f64) -> Option<Design> {
         Parameter::K2 => best.at.get(variable) * share,
         _ => best.at.get(variable),
     };
-    (reached > TOUCHES * from).then(|| Design::new(scaled).ok()).flatten()
+    (reached > ACTIVE * from).then(|| Design::new(scaled).ok()).flatten()
 }
 
-/// Whether a design is better under a bound than another, by more than what is no gain.
+/// Whether a design is better under a bound than `before`, by more than [`GAIN`] in E1max.
 fn gains(best: &Candidate, before: Option<&Candidate>, under: Under) -> bool {
     before.is_none_or(|before| {
         best.excess(under) < before.excess(under) || best.e1_max < (1.0 - GAIN) * before.e1_max

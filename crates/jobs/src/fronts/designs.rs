@@ -1,51 +1,51 @@
-//! The designs of `fronts`: searched for, compared, certified.
+//! The designs of `fronts`: the best under each bound, their tables and certificates.
 //!
-//! Every search finds a design. Afterwards all designs of a damper are evaluated on more samples of the band, and under each bound
-//! stands the best that keeps it, whichever search found it: so a looser bound is never worse.
+//! All designs of a damper are evaluated on more samples of the band than in the searches. Each bound gets the best design that keeps it,
+//! whichever search found it, so a looser bound is never worse.
 
 use super::candidate::{Candidate, SAME, Under};
 use crate::Error;
 use crate::Observer;
-use crate::again::{Made, json};
 use crate::certify::{Certificate, certify};
 use crate::columns;
 use crate::needs::Largest;
+use crate::recompute::{Recomputed, json};
 use crate::resolved::Resolved;
 use crate::rows::in_a_stage;
-use crate::tune::objective::finer;
+use crate::tune::objective::with_samples;
 use retune_model::{Design, Measure, Parameter};
 use retune_report::cells;
 use retune_report::table::{Cell, Table};
 use retune_study::{FrontsPlan, Study, Sweep};
 use std::path::Path;
 
-/// The verdict of a damper that no search found.
+/// The verdict of a study's damper, which no search found.
 pub(super) const GIVEN: &str = "of the study";
 
-/// Most samples of a band that a certificate begins with.
+/// Most samples of the band for a certificate.
 const MOST: usize = 121;
 
-/// What a table tells of the structure beside the stroke and the force of a design: the largest values from rest on.
+/// The largest values of the structure from rest on that tables have besides stroke and force.
 pub(super) const NEEDS: [Measure; 3] = [Measure::Displacement, Measure::Acceleration, Measure::GroundForce];
 
-/// The best design of a damper under a bound; none where no design that was found keeps it.
+/// The best design of a damper under a bound; none where no design found keeps it.
 pub type Row<'a> = (Under, Option<&'a Candidate>);
 
 /// The designs that all searches found.
 #[derive(Debug)]
 pub struct Fronts {
     pub plan: FrontsPlan,
-    /// Those of the searches, in their order.
+    /// The designs of the searches, in their order.
     pub designs: Vec<Candidate>,
-    /// The dampers in the scenes of the studies, where they can be run.
+    /// The dampers of the studies, where they can be run.
     pub given: Vec<Candidate>,
-    /// What the structure does without a damper, from rest on.
+    /// The largest values of the structure without a damper, from rest on.
     pub none: Option<Largest>,
-    /// The certificates of the designs that are furthest below the first damper under the same bound, each value once.
+    /// The certified designs: those with the largest gain over the first damper under the same bound, each value once.
     pub certified: Vec<Certified>,
 }
 
-/// A design that is certified: below the best of the first damper under the same bound.
+/// A certified design, better than the best of the first damper under the same bound.
 #[derive(Debug)]
 pub struct Certified {
     pub under: Under,
@@ -55,8 +55,8 @@ pub struct Certified {
 }
 
 impl Fronts {
-    /// The number of the design found that is the best of a damper under a bound; none where none keeps it. Of those as good, the best
-    /// that is not known to do much worse from other starts than rest, nor is nearly one that does.
+    /// The index of the best design found for a damper under a bound; none where none keeps it. Among equally good designs it is the best
+    /// that is not, nor is close to, one known to be unsafe ([`Candidate::is_unsafe`]).
     pub(super) fn found(&self, under: Under) -> Option<usize> {
         let mut kept: Vec<usize> =
             (0..self.designs.len()).filter(|&i| self.designs[i].keeps(under)).collect();
@@ -68,7 +68,7 @@ impl Fronts {
         as_good.find(is_safe).or(kept.first()).copied()
     }
 
-    /// The best design under a bound, that of the study among them.
+    /// The best design under a bound, including the study's damper.
     fn row(&self, under: Under) -> Option<&Candidate> {
         let found = self.found(under).map(|number| &self.designs[number]);
         let kept = self.given.iter().filter(|given| given.keeps(under));
@@ -77,7 +77,7 @@ impl Fronts {
         given.filter(is_better).or(found)
     }
 
-    /// The best designs under each bound, the dampers in their order under each.
+    /// The best designs of all dampers, bound by bound.
     pub fn rows(&self, sweep: Sweep) -> Vec<Row<'_>> {
         let row = |under: Under| (under, self.row(under));
         let dampers = 0..self.plan.dampers.len();
@@ -99,13 +99,13 @@ impl Fronts {
         self.plan.dampers.get(damper).map_or("", |(name, _)| name)
     }
 
-    /// Whether a damper's response is in closed form, and so touches nothing.
+    /// Whether a damper's response is steady, in closed form, and so touches no wall.
     pub fn is_steady(&self, damper: usize) -> bool {
         let study = self.plan.dampers.get(damper).map(|(_, study)| study);
         study.is_some_and(|study| study.objective().is_steady())
     }
 
-    /// Certifies the designs that are furthest below the first damper under the same bound, each value once.
+    /// Certifies the designs with the largest gain over the first damper under the same bound, each value once.
     pub(super) fn certify(&self, watch: &dyn Observer) -> Result<Vec<Certified>, Error> {
         let mut gains: Vec<(f64, Under, &Candidate)> = Vec::new();
         let rows = self.plan.sweeps().into_iter().flat_map(|sweep| self.rows(sweep));
@@ -137,8 +137,8 @@ impl Fronts {
         Some(self.row(Under { damper: 0, ..under })?.e1_max)
     }
 
-    /// The parameters that tables have columns for: the paper's, what else a study varies, and what a known design has otherwise than its
-    /// study.
+    /// The parameters that tables have columns for: the paper's, others that a study varies, and those in which a known design differs from
+    /// its study.
     pub fn parameters(&self) -> Vec<Parameter> {
         let studies = || self.plan.dampers.iter().map(|(_, study)| study);
         let has = |parameter: &Parameter| {
@@ -151,7 +151,7 @@ impl Fronts {
         Parameter::columns(&Parameter::VARIED.into_iter().filter(has).collect::<Vec<_>>())
     }
 
-    /// The table along a bound: a row for each bound and damper; what no design keeps has empty fields.
+    /// The table along a bound: a row for each bound and damper, with empty fields where no design keeps the bound.
     pub fn table(&self, sweep: Sweep) -> Table {
         let parameters = self.parameters();
         let (bound, designs) = (format!("{}_most", sweep.name()), Candidate::names(&parameters));
@@ -179,24 +179,24 @@ impl Fronts {
     }
 }
 
-/// The certificate of a design, made again.
-pub(super) fn again(place: &Path, name: &str) -> Result<Made, Error> {
-    let said = json(place, name)?;
+/// Recomputes the certificate of a design.
+pub(super) fn recompute(place: &Path, name: &str) -> Result<Recomputed, Error> {
+    let stored = json(place, name)?;
     let resolved = Resolved::read(place)?;
     let samples = resolved.plan["samples"].as_u64().map(|samples| samples as usize);
     let studies = resolved.studies()?;
     let certified = || {
-        let (_, study) = studies.iter().find(|(_, study)| said["study"] == study.name())?;
-        certifiable(study, samples?, &crate::again::design(&said["design"])?)
+        let (_, study) = studies.iter().find(|(_, study)| stored["study"] == study.name())?;
+        certifiable(study, samples?, &crate::recompute::design(&stored["design"])?)
     };
     Ok(match certified() {
-        Some(study) => crate::certify::again(&study, said),
-        None => Made::Not("is of none of the studies".to_owned()),
+        Some(study) => crate::certify::recompute(&study, stored),
+        None => Recomputed::Failed("is of none of the studies".to_owned()),
     })
 }
 
-/// The study that a design is certified by: on the samples of the study of fronts, or fewer, since a certificate looks at a hundred designs
-/// and at four times the samples.
+/// The study by which a design is certified: on the samples of the plan, at most [`MOST`], since a certificate evaluates a hundred designs
+/// and four times the samples.
 fn certifiable(study: &Study, samples: usize, at: &Design) -> Option<Study> {
-    finer(study, samples.min(MOST), at)
+    with_samples(study, samples.min(MOST), at)
 }

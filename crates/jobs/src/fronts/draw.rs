@@ -7,9 +7,9 @@ use retune_report::colour::{BLACK, BLUE, Colour, ORANGE, PURPLE, VERMILION};
 use retune_report::{Axis, Chart, Drawing, Key, Layer, Mark, Shape, Sheet, Stroke, Width};
 use retune_study::Sweep;
 
-/// A colour for each damper, of what was found and of the damper in its study.
+/// The colours of each damper: of the designs found and of the study's damper.
 const COLOURS: [[Colour; 2]; 2] = [[BLUE, PURPLE], [VERMILION, ORANGE]];
-/// What is bounded, in the order of the charts of the front: the label of its values, and that of bounds on it.
+/// The bounded quantities, in the order of the charts of the front, with the labels of their values and of bounds on them.
 const BOUNDED: [(Sweep, &str, &str); 3] = [
     (Sweep::Stroke, "largest stroke, m", "stroke at most, m"),
     (Sweep::ContactForce, "contact force, N", "contact force at most, N"),
@@ -26,7 +26,7 @@ fn found(damper: usize) -> Mark {
     Mark::new(shape, colour, size)
 }
 
-/// The mark of the damper in a study.
+/// The mark of the study's damper.
 fn of_study(damper: usize) -> Mark {
     let [_, colour] = COLOURS[damper % COLOURS.len()];
     let shape = if damper == 0 { Shape::Triangle } else { Shape::Cross };
@@ -37,14 +37,14 @@ fn of_study(damper: usize) -> Mark {
 pub(super) fn sweep(fronts: &Fronts, sweep: Sweep) -> Drawing {
     let rows = fronts.rows(sweep);
     let line = |damper: usize| {
-        let own = rows.iter().filter(|(under, _)| under.damper == damper);
+        let rows_of_damper = rows.iter().filter(|(under, _)| under.damper == damper);
         let point = |(under, design): &Row| (under.bound, design.map_or(f64::NAN, |design| design.e1_max));
-        own.map(point).collect::<Vec<(f64, f64)>>()
+        rows_of_damper.map(point).collect::<Vec<(f64, f64)>>()
     };
     let mut layers = Vec::new();
     for damper in 0..fronts.plan.dampers.len() {
         let mark = found(damper);
-        // A design stays allowed until the next bound: between bounds nothing was searched for.
+        // Steps, since a design stays feasible until the next bound and nothing was searched for in between.
         layers.push(Layer::Steps { points: line(damper), stroke: Stroke::solid(mark.colour) });
         layers.push(Layer::Marks { points: line(damper), mark });
     }
@@ -76,8 +76,8 @@ pub(super) fn front(fronts: &Fronts) -> Drawing {
         let most = all().map(|design| design.reached(of)).fold(0.0, f64::max);
         let mut layers = Vec::new();
         for damper in 0..fronts.plan.dampers.len() {
-            let own = fronts.designs.iter().filter(|design| design.damper == damper);
-            let points: Vec<(f64, f64)> = own.map(point).collect();
+            let designs = fronts.designs.iter().filter(|design| design.damper == damper);
+            let points: Vec<(f64, f64)> = designs.map(point).collect();
             let (mark, line) = (found(damper), front_of(points.clone()));
             layers.push(Layer::Marks { points, mark: Mark { size: 0.5 * mark.size, ..mark } });
             layers.push(Layer::Steps { points: line, stroke: Stroke::solid(mark.colour) });
@@ -101,7 +101,7 @@ fn draw(fronts: &Fronts, sheet: Sheet) -> Drawing {
     figure(sheet, fronts.plan.dampers.last().map(|(_, study)| study))
 }
 
-/// Of some points those that no other is left of and below, from left to right.
+/// The non-dominated points, from left to right: those with no other to the left and below.
 fn front_of(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
     let mut least = f64::INFINITY;
@@ -113,7 +113,7 @@ fn front_of(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     points
 }
 
-/// The dampers in the studies, each marked, against what they reach.
+/// The marks of the studies' dampers.
 fn given(fronts: &Fronts, of: Sweep) -> impl Iterator<Item = Layer> {
     fronts.given.iter().map(move |design| Layer::Marks {
         points: vec![(design.reached(of), design.e1_max)],
@@ -121,7 +121,7 @@ fn given(fronts: &Fronts, of: Sweep) -> impl Iterator<Item = Layer> {
     })
 }
 
-/// The entries of the legend; of the dampers in the studies, those that are `shown`.
+/// The entries of the legend; the studies' dampers only where `shown`.
 fn legend(fronts: &Fronts, shown: impl Fn(&Candidate) -> bool) -> Vec<(Key, String)> {
     let tuned = fronts.plan.dampers.iter().enumerate().map(|(i, (name, _))| {
         let mark = found(i);

@@ -1,4 +1,4 @@
-//! The page of `fronts`: the answer in words, whose numbers are those of the tables.
+//! The page of `fronts` and its answer in words, with the numbers of the tables.
 
 use super::candidate::{Candidate, SAME, Under, at_most};
 use super::designs::{Certified, Fronts, NEEDS};
@@ -51,7 +51,7 @@ pub(super) fn write(fronts: &Fronts, directory: &Directory) -> Result<(), Error>
     pages::write(&page, directory)
 }
 
-/// What the names of motions say.
+/// The meaning of the names of motions.
 const MOTIONS: &str = "A motion T, 1, 0 repeats every period T of the force, with one impact on the structure and none on the obstacle.";
 
 /// How the designs were found and compared.
@@ -124,7 +124,7 @@ fn table(fronts: &Fronts, sweep: Sweep) -> Block {
     Block::table(format!("The best design of each damper with {} at most a bound.", sweep.name()), head, rows)
 }
 
-/// What the designs of [`table`] need, beside no damper.
+/// The needs of the designs of [`table`], and of the structure without a damper.
 fn needs(fronts: &Fronts, sweep: Sweep) -> Block {
     let found = fronts.rows(sweep).into_iter().map(|(_, design)| design.is_some());
     let table = fronts.table(sweep).only(found);
@@ -151,21 +151,21 @@ fn needs(fronts: &Fronts, sweep: Sweep) -> Block {
     )
 }
 
-/// The reasons of verdicts other than robust in [`table`], each once.
+/// The reasons for verdicts other than robust in [`table`], each once.
 fn reasons(fronts: &Fronts, sweep: Sweep) -> Option<Block> {
-    let mut said: Vec<(String, Vec<String>)> = Vec::new();
+    let mut listed: Vec<(String, Vec<String>)> = Vec::new();
     for (Under { bound, damper, .. }, design) in fronts.rows(sweep) {
         let has = |design: &&Candidate| !design.reason.is_empty() && design.verdict != Verdict::Robust.name();
         let Some(design) = design.filter(has) else { continue };
         let reason = format!("{} ({}): {}", fronts.name(damper), words(fronts, design), design.reason);
-        match said.iter_mut().find(|(known, _)| *known == reason) {
+        match listed.iter_mut().find(|(known, _)| *known == reason) {
             Some((_, bounds)) => bounds.push(bound.to_string()),
-            None => said.push((reason, vec![bound.to_string()])),
+            None => listed.push((reason, vec![bound.to_string()])),
         }
     }
     let line =
         |(reason, bounds): (String, Vec<String>)| format!("{}, {reason}.", at_most(sweep, bounds.join(", ")));
-    (!said.is_empty()).then(|| Block::List(said.into_iter().map(line).collect()))
+    (!listed.is_empty()).then(|| Block::List(listed.into_iter().map(line).collect()))
 }
 
 /// The advantage of each damper over the first, in words.
@@ -188,7 +188,7 @@ pub(super) fn answer(fronts: &Fronts) -> Vec<String> {
     words
 }
 
-/// A damper beside the first along a bound.
+/// A damper compared with the first along a bound, in words.
 fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
     let (name, first, what) = (fronts.name(damper), fronts.name(0), sweep.name());
     let rows = fronts.rows(sweep).into_iter().filter(|(under, _)| under.damper == damper);
@@ -214,8 +214,9 @@ fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
         _ => format!("{what}: under no bound is the {name} better than the {first} by more than 1 %."),
     };
     let mut remark = |which: &dyn Fn(&Candidate, Option<f64>) -> bool, before: &str, after: &str| {
-        let own = rows.iter().filter(|(_, design, none)| design.is_some_and(|design| which(design, *none)));
-        let bounds = listed(own.map(|(bound, ..)| bound).collect());
+        let matching =
+            rows.iter().filter(|(_, design, none)| design.is_some_and(|design| which(design, *none)));
+        let bounds = listed(matching.map(|(bound, ..)| bound).collect());
         if !bounds.is_empty() {
             words += &format!(" {before} {}{after}", at_most(sweep, bounds));
         }
@@ -248,7 +249,7 @@ fn certificate(fronts: &Fronts, Certified { under, design, certificate, .. }: &C
     )
 }
 
-/// A design in words, with what tables have columns for.
+/// A design in words, with the parameters that the tables have.
 fn words(fronts: &Fronts, design: &Candidate) -> String {
     let shown = Design::try_from(design.at.only(&fronts.parameters())).unwrap_or(design.at);
     design_words(&shown, 4)

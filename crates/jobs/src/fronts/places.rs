@@ -1,4 +1,4 @@
-//! Places about a design at which descents begin, or that are looked at.
+//! Points near a design where descents start or that are evaluated.
 
 use retune_model::{Design, Parameter, PerVariable};
 use retune_study::{Optimize, clipped};
@@ -8,22 +8,22 @@ fn bounds(optimize: &Optimize, variable: Parameter) -> (f64, Option<f64>) {
     optimize.bounds.get(variable).unwrap_or((0.0, None))
 }
 
-/// The design itself, and each copy with a gap at its lower bound that is this near to it, as a share of the side.
+/// The design itself, and copies with one gap at its lower bound if it is close to it.
 pub(super) fn starts(at: &Design, optimize: &Optimize) -> Vec<PerVariable<f64>> {
     const NEAR: f64 = 0.05;
-    let own = clipped(at, optimize);
+    let design = clipped(at, optimize);
     let at_bound = |variable: Parameter| {
-        let value = own.get(variable)?;
+        let value = design.get(variable)?;
         let (low, high) = bounds(optimize, variable);
         let is_near = value > low && value - low < NEAR * (high.unwrap_or(f64::INFINITY) - low).min(1.0);
-        let mut start = own;
+        let mut start = design;
         start.set(variable, Some(low));
         is_near.then_some(start)
     };
-    [own].into_iter().chain([Parameter::D, Parameter::C].into_iter().filter_map(at_bound)).collect()
+    [design].into_iter().chain([Parameter::D, Parameter::C].into_iter().filter_map(at_bound)).collect()
 }
 
-/// A parameter moved by a share of its side of the box, where it has two ends, or of its value.
+/// A parameter moved by a share of the width of its bounds, or of its value without an upper bound.
 fn moved(at: &Design, optimize: &Optimize, variable: Parameter, share: f64) -> f64 {
     let value = at.get(variable);
     let (low, high) = bounds(optimize, variable);
@@ -31,7 +31,7 @@ fn moved(at: &Design, optimize: &Optimize, variable: Parameter, share: f64) -> f
     (value + share * side).max(low)
 }
 
-/// Along each parameter by a twentieth of its side.
+/// The design moved along each parameter by a twentieth of the width of its bounds, both ways.
 pub(super) fn about(at: &Design, optimize: &Optimize) -> Vec<Design> {
     const FAR: f64 = 0.05;
     let moved = |variable: Parameter, share: f64| {
@@ -46,8 +46,8 @@ pub(super) fn about(at: &Design, optimize: &Optimize) -> Vec<Design> {
         .collect()
 }
 
-/// Scattered by up to a tenth of each side; a gap at its lower bound stays there. Where motions are irregular E1max jumps from one design to
-/// the next, and no slope leads to the better ones.
+/// Points scattered by up to a tenth of the width of each parameter's bounds; a gap at its lower bound stays there. Where motions are
+/// irregular, E1max jumps from design to design, and no descent leads to the better ones.
 pub(super) fn scattered(at: &Design, optimize: &Optimize) -> Vec<PerVariable<f64>> {
     const FAR: f64 = 0.1;
     const PLACES: u32 = 128;
@@ -62,11 +62,11 @@ pub(super) fn scattered(at: &Design, optimize: &Optimize) -> Vec<PerVariable<f64
     places.map(|at| clipped(&at, optimize)).collect()
 }
 
-/// On the sides of the box where one wall touches the damper at rest and the spring is as stiff as a bound allows: good designs lie there, and a
-/// search of the whole box does not find them.
+/// Points on the sides of the box where one gap is at its lower bound and the spring at its upper bound: good designs lie there that a
+/// search of the whole box misses.
 pub(super) fn on_sides(at: &Design, optimize: &Optimize) -> Vec<PerVariable<f64>> {
     const PLACES: u32 = 320;
-    /// Share of its upper bound at which a dashpot begins.
+    /// Smallest dashpot, as a share of its upper bound.
     const SMALL: f64 = 0.02;
     let box_of = |variable: Parameter| match optimize.bounds.get(variable) {
         Some((low, Some(high))) if optimize.vary.contains(&variable) => Some((low, high)),

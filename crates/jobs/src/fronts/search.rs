@@ -1,6 +1,6 @@
-//! The searches of `fronts`: under each bound that of the study, then descents from what was found there and under the neighbouring bounds.
+//! The searches of `fronts`: under each bound the study's search, then descents from its results, also with the neighbouring bounds.
 //!
-//! The best are looked at once more on the finest samples, and it is by these that designs are compared.
+//! The best designs are evaluated again on the finest samples, by which designs are compared.
 
 use super::candidate::{CONTINUED, Candidate, Under, at_most, by_excess};
 use super::descents::Task;
@@ -11,13 +11,13 @@ use crate::needs::Largest;
 use crate::rows::in_a_stage;
 use crate::searches::Searches;
 use crate::tune::ends::Ends;
-use crate::tune::objective::{finer, worst};
+use crate::tune::objective::{with_samples, worst};
 use retune_model::{Design, Measure, Parameter, PerVariable, Scene};
 use retune_optim::Limit;
 use retune_store::Journal;
 use retune_study::{FrontsPlan, Optimize, Study, Sweep, bounded, clipped};
 
-/// A search keeps this much below a limit, for between its samples a stroke or a force may be a little larger.
+/// Share of a limit that searches keep, since a stroke or a force may be slightly larger between samples.
 const ROOM: f64 = 0.99;
 
 pub(super) fn search(plan: FrontsPlan, searches: &Searches) -> Result<Fronts, Error> {
@@ -37,7 +37,7 @@ pub(super) fn search(plan: FrontsPlan, searches: &Searches) -> Result<Fronts, Er
     for damper in 0..count {
         tasks.extend(fronts.tune(damper, searches)?);
     }
-    fronts.go_down(tasks, searches)?;
+    fronts.descend_until_no_gain(tasks, searches)?;
     fronts.judge(searches)?;
     let bare = |(_, study): &(String, Study)| Largest::of(study, &Scene { damper: None, ..study.scene });
     fronts.none = fronts.plan.dampers.last().and_then(bare);
@@ -46,8 +46,8 @@ pub(super) fn search(plan: FrontsPlan, searches: &Searches) -> Result<Fronts, Er
 }
 
 impl Fronts {
-    /// The searches of a damper under all bounds, side by side; the descents that begin where they came to. A steady response is exact over
-    /// the whole band: its searches need none.
+    /// Runs the searches of a damper under all bounds in parallel, and returns the descents from their results. A steady response is exact
+    /// over the whole band, so its searches need no descents.
     fn tune(&mut self, damper: usize, searches: &Searches) -> Result<Vec<Task>, Error> {
         let bounds: Vec<Under> = self.all().into_iter().filter(|under| under.damper == damper).collect();
         let study = |under: &Under| Ok((self.under(*under, self.starts(*under))?, under.name()));
@@ -75,7 +75,7 @@ impl Fronts {
         self.bounded(Under { bound: room * under.bound, ..under }, starts)
     }
 
-    /// What its search varies, and within which bounds; none where there is no such search.
+    /// The search of a damper under a bound; none where there is none.
     pub(super) fn optimize(&self, under: Under) -> Option<Optimize> {
         self.under(under, Vec::new()).ok()?.optimize
     }
@@ -90,23 +90,23 @@ impl Fronts {
         bounded(study, sweep, bound, starts).map_err(Error::rule(study))
     }
 
-    /// The designs at which a search starts: the best of the dampers before it under the bound.
+    /// The starts of a search: the best designs of the preceding dampers under the bound.
     fn starts(&self, under: Under) -> Vec<PerVariable<f64>> {
         let Some(optimize) = self.optimize(under) else { return Vec::new() };
         let best = (0..under.damper).filter_map(|damper| self.best(Under { damper, ..under }));
         best.map(|design| clipped(&design.at, &optimize)).collect()
     }
 
-    /// The best design of a damper under a bound, or that which is beyond it by least.
+    /// The best design of a damper under a bound, or the one with the least excess over it.
     pub(super) fn best(&self, under: Under) -> Option<Candidate> {
         let own = self.designs.iter().filter(|design| design.damper == under.damper);
         own.min_by(|a, b| by_excess(a, b, under)).cloned()
     }
 
-    /// A design on the samples of the study of fronts; none where it cannot be run.
+    /// A design evaluated on the samples of the plan; none where it cannot be run.
     pub(super) fn candidate(&self, damper: usize, at: Design) -> Option<Candidate> {
         let (_, study) = self.plan.dampers.get(damper)?;
-        let found = worst(&finer(study, self.plan.said.samples, &at)?)?;
+        let found = worst(&with_samples(study, self.plan.said.samples, &at)?)?;
         let [stroke, force] =
             [Measure::Stroke, Measure::ContactForce].map(|of| found.reached.get(Limit::Of(of)));
         let (e1_max, checked, needs) = (found.value, None, None);
@@ -114,8 +114,7 @@ impl Fronts {
         Some(Candidate { damper, at, e1_max, checked, stroke, force, verdict, reason, needs })
     }
 
-    /// Looks at the best designs under each bound once more, on the finest samples, and certifies those that have no verdict, until the
-    /// best by both are known.
+    /// Evaluates the best design under each bound on the finest samples and certifies it, until all best designs have both.
     fn judge(&mut self, searches: &Searches) -> Result<(), Error> {
         loop {
             let rows = self.all().into_iter().filter_map(|under| Some((self.found(under)?, under)));
@@ -136,18 +135,18 @@ impl Fronts {
         }
     }
 
-    /// A design looked at on the finest samples; or, where that is done, with the verdict of its certificate.
+    /// The design with E1max on the finest samples; or, if it has that, with the verdict of its certificate.
     fn judged(&self, design: &Candidate, under: Under, journal: &Journal) -> Result<Candidate, Error> {
         let Candidate { damper, at, e1_max, checked, .. } = design;
         if checked.is_none() {
-            let seen = || {
-                let study = finer(&self.plan.dampers[*damper].1, self.plan.check(), at);
+            let finest = || {
+                let study = with_samples(&self.plan.dampers[*damper].1, self.plan.check(), at);
                 study.and_then(|study| study.energy(&study.scene)).unwrap_or(f64::INFINITY)
             };
             let numbers = Parameter::VARIED.map(|parameter| at.get(parameter));
-            let seen = journal.value(&format!("{damper} checked"), &numbers, f64::INFINITY, seen, |_| ());
-            let seen = seen.max(*e1_max);
-            return Ok(Candidate { checked: Some(seen), ..design.clone() });
+            let finest = journal.value(&format!("{damper} checked"), &numbers, f64::INFINITY, finest, |_| ());
+            let finest = finest.max(*e1_max);
+            return Ok(Candidate { checked: Some(finest), ..design.clone() });
         }
         let study = self.bounded(under, Vec::new())?;
         let scene = study.scene_at(at).unwrap_or(study.scene);
@@ -157,7 +156,7 @@ impl Fronts {
         Ok(Candidate { verdict, reason, needs, ..design.clone() })
     }
 
-    /// Every bound for every damper.
+    /// All dampers under all bounds.
     pub(super) fn all(&self) -> Vec<Under> {
         let mut all = Vec::new();
         for damper in 0..self.plan.dampers.len() {

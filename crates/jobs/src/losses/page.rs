@@ -1,4 +1,4 @@
-//! The page of `losses` with its figures, which begins with its answer. Every number on it is one of the table beside it.
+//! The page of `losses` with its figures and its answer. Every number on it comes from the table beside it.
 
 use super::points::{FILE, Losses, Point, Tuning};
 use crate::Error;
@@ -39,7 +39,7 @@ const LAW: &str = "The restitution e is the speed after over the speed before an
 const ENERGY: &str = "At the frequency that is worst for the damper at each restitution, over the window of the study. In a motion that repeats, the sum is \
                       the mean power of the force.";
 
-/// The answer, a sentence for each statement.
+/// The answer, one sentence for each damper.
 fn answer(losses: &Losses) -> Vec<String> {
     let unit = losses.study.quantity().unit();
     let value = |point: &Point| format!("{} {unit}", rounded(point.value, 4));
@@ -105,7 +105,7 @@ const fn line(tuning: Tuning) -> Stroke {
 
 const ANEW: Mark = Mark::new(Shape::Disc, BLUE, 4.0);
 
-/// Points of a damper, by its restitution.
+/// Points of a damper over the restitution.
 fn points(losses: &Losses, tuning: Tuning, value: impl Fn(&Point) -> f64) -> Vec<(f64, f64)> {
     losses.of(tuning).map(|point| (point.restitution, value(point))).collect()
 }
@@ -151,7 +151,7 @@ fn draw_dashpot(losses: &Losses) -> Drawing {
     draw(losses, title, title, legend, charts)
 }
 
-/// Where the energy of the worst run goes: a chart for each damper.
+/// The powers of the worst run over the restitution, a chart for each damper.
 fn draw_powers(losses: &Losses) -> Drawing {
     let parts = [
         ("dashpot of the structure", Stroke::new(BLACK, 1.1, Dash::Short)),

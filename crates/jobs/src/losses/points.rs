@@ -1,7 +1,7 @@
 //! The dampers of `losses` at each restitution, and their table.
 
-use crate::again::{Row, Source};
 use crate::contacts::Powers;
+use crate::recompute::{Row, Source};
 use crate::resolved::Resolved;
 use crate::{Error, columns};
 use retune_model::{Design, Parameter};
@@ -13,14 +13,14 @@ use std::path::Path;
 
 pub(super) const FILE: &str = "losses.csv";
 
-/// For what a damper was tuned.
+/// What a damper was tuned for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tuning {
     /// The paper's.
     Paper,
-    /// That of the study's scene.
+    /// The damper of the study's scene.
     Study,
-    /// For contacts that lose nothing.
+    /// For lossless contacts.
     Lossless,
     /// For all restitutions at once.
     Hedged,
@@ -44,7 +44,7 @@ impl Tuning {
     }
 }
 
-/// A design at a restitution, and what it is worth there.
+/// A design at a restitution, and its performance there.
 #[derive(Clone, Debug)]
 pub struct Point {
     /// The restitution.
@@ -53,7 +53,7 @@ pub struct Point {
     pub design: Design,
     /// The value of the objective, worst over its band.
     pub value: f64,
-    /// Where, rad/s.
+    /// The worst frequency, rad/s.
     pub omega: f64,
     /// Mean powers lost in the window of that run, in the dashpots of the structure and of the damper and in impacts, W.
     pub powers: [f64; 3],
@@ -75,7 +75,7 @@ impl Point {
         Ok(Self { restitution, design, value: found.value, omega, powers, impact_speed })
     }
 
-    /// The numbers of its row that follow from its restitution and its design, each with its name.
+    /// The named numbers of its row that follow from restitution and design.
     fn numbers(&self, study: &Study) -> [(&'static str, f64); 6] {
         let [structure, damper, impacts] = self.powers;
         [
@@ -108,12 +108,12 @@ pub struct Losses {
 }
 
 impl Losses {
-    /// Those of a damper, by falling restitution.
+    /// The points of a damper, by falling restitution.
     pub fn of(&self, tuning: Tuning) -> impl Iterator<Item = &Point> {
         self.points.iter().filter(move |(own, _)| *own == tuning).map(|(_, point)| point)
     }
 
-    /// Those that are compared.
+    /// The dampers that are compared.
     pub fn tunings(&self) -> Vec<Tuning> {
         Tuning::ALL.into_iter().filter(|tuning| self.of(*tuning).next().is_some()).collect()
     }
@@ -133,8 +133,8 @@ impl Losses {
     }
 }
 
-/// The rows of the table, computed again from design and restitution.
-pub(super) fn again(place: &Path, _name: &str) -> Result<Source, Error> {
+/// Recomputes the rows of the table from design and restitution.
+pub(super) fn recompute(place: &Path, _name: &str) -> Result<Source, Error> {
     let (_, study) = Resolved::one(place)?;
     Ok(Source::new(move |row: Row| {
         let point = Point::new(&study, row.number("restitution"), row.design()?).ok()?;

@@ -36,7 +36,7 @@ const CASES: [Case; 3] = [
 const NEAR: [f64; 4] = [-0.02, -0.01, 0.01, 0.02];
 /// Seconds between the points that are drawn.
 const INTERVAL: f64 = 0.0025;
-/// Time for which the motions are shown beyond the end of the paper's studies, s: bursts are rare.
+/// Time, s, for which the motions are shown beyond the end of the paper's studies, since bursts are rare.
 const MORE: f64 = 100.0;
 
 impl Case {
@@ -64,15 +64,15 @@ pub fn figure7(plan: &Plan) -> Result<Item, Error> {
     let mut table = Table::headed(
         "case | R, m | ω, rad/s | motion | largest exponent, 1/s | laminar share | bursts | confidence",
     );
-    let own = plan.radius();
+    let radius_of_plan = plan.radius();
     let bar =
         plan.watch.progress("figure 7", (CASES.len() * (plan.other_radii().count() + NEAR.len())) as u64);
     for case in &CASES {
         let scene = Parameter::Omega.at(plan.scenes(case.k1)?[1], case.omega)?;
         draw(plan, case, &scene, &mut item)?;
-        let mut variants = vec![(own, case.omega)];
+        let mut variants = vec![(radius_of_plan, case.omega)];
         if !plan.is_brief {
-            variants.extend(NEAR.map(|shift| (own, case.omega + shift)));
+            variants.extend(NEAR.map(|shift| (radius_of_plan, case.omega + shift)));
             variants.extend(plan.other_radii().map(|radius| (radius, case.omega)));
         }
         let judged = of_each(&variants, &*bar, |&(radius, omega)| {
@@ -108,7 +108,7 @@ pub fn figure7(plan: &Plan) -> Result<Item, Error> {
     Ok(item)
 }
 
-/// A slow approach to a periodic orbit can look like a transient: states its rate.
+/// A note on the rate of a slow approach to a periodic orbit, which can look like transient chaos.
 fn creeping(case: &Case, regime: &Regime) -> Option<String> {
     let slow = regime.kind == Kind::Periodic && regime.transient.is_none() && regime.exponent.value < 0.0;
     let (letter, name, rate) = (case.letter, regime.label(), regime.exponent.value);
@@ -116,16 +116,16 @@ fn creeping(case: &Case, regime: &Regime) -> Option<String> {
     slow.then(|| format!("Case ({letter}): the motion from rest creeps towards {name}, and its exponent is the rate of that: with {rate:.3} /s it takes {time:.0} s to come e times nearer, so in a run of 100 s it need not look periodic; but neighbours do not part at any time, which transient chaos would need."))
 }
 
-fn state(case: &Case, run: &Response, others: &[String], own: &Regime, window: Window, item: &mut Item) {
+fn state(case: &Case, run: &Response, others: &[String], regime: &Regime, window: Window, item: &mut Item) {
     let none = "none of the other settings tried".to_owned();
     let others = if others.is_empty() { none } else { joined(others, "; ") };
-    let (name, exponent, error) = (own.label(), own.exponent.value, own.exponent.error);
-    let (laminar, confidence) = (100.0 * own.laminar, own.confidence);
+    let (name, exponent, error) = (regime.label(), regime.exponent.value, regime.exponent.error);
+    let (laminar, confidence) = (100.0 * regime.laminar, regime.confidence);
     let ([ps, obstacle], Window { from, to }) = (run.impacts, window);
     item.statement(
         &format!("({}) {} at {}", case.letter, case.paper, case.place()),
         "Holds if the motion from rest has this name by our definitions (table below) and strikes the walls that the paper says; in part if only one is so.",
-        Verdict::of_all(&[case.agrees(own), Zone::of(run.impacts) == case.zone]),
+        Verdict::of_all(&[case.agrees(regime), Zone::of(run.impacts) == case.zone]),
         format!("{name} (exponent {exponent:.3} ± {error:.3} /s, laminar {laminar:.0} % of the time, confidence {confidence:.2}); {ps} impacts on the PS and {obstacle} on the obstacle in {from}–{to} s; the paper's word fits also at: {others}"),
     );
 }

@@ -13,15 +13,15 @@ const NONE: usize = 0;
 const SSVI: usize = 1;
 const TMD: usize = 2;
 const DAMPERS: [usize; 2] = [SSVI, TMD];
-/// The number of a ladder that is told.
+/// The number of a ladder that is reported.
 const FINEST: Pick = Ladder::finest;
 
-/// Depths of the dip between two peaks for which peaks are counted: if the count is the same for all, it does not depend on the
-/// depth. The scatter of a chaotic stretch from one frequency to the next is a few per cent, which sets the least.
+/// Depths of the dip between peaks at which peaks are counted: a count equal for all does not depend on the depth. The scatter of a chaotic
+/// range from one frequency to the next, a few per cent, sets the smallest.
 const DEPTHS: [f64; 4] = [0.05, 0.1, 0.15, 0.2];
-/// Shares of what is left that differ by no more than this are similar; the rules below say it in words.
+/// Remaining reductions that differ by at most this share are similar; the rules below state it in words.
 const SIMILAR: f64 = 0.1;
-/// Share of the tuned reduction that must be left for a tuning to be retained; the rules below say it in words.
+/// Share of the tuned reduction that must remain for a tuning to be retained; the rules below state it in words.
 const RETAINED: f64 = 0.9;
 
 /// The curves at one stiffness with the ladders of their highest points.
@@ -38,19 +38,19 @@ impl Detuned<'_> {
     }
 }
 
-/// The structures by their stiffness, rising, and the place of the tuned one.
+/// The structures by rising stiffness, and the index of the tuned one.
 struct Structures<'a> {
     all: Vec<&'a Detuned<'a>>,
     tuned: usize,
 }
 
 impl Structures<'_> {
-    /// The share of the reduction of the tuned structure that is left.
-    fn left(&self, i: usize, scene: usize, pick: Pick) -> f64 {
+    /// The reduction as a share of that of the tuned structure.
+    fn remaining(&self, i: usize, scene: usize, pick: Pick) -> f64 {
         self.all[i].reduction(scene, pick) / self.all[self.tuned].reduction(scene, pick)
     }
 
-    /// By which share the reductions of the two dampers differ.
+    /// The relative difference of the reductions of the two dampers.
     fn difference(&self, i: usize, pick: Pick) -> f64 {
         (self.all[i].reduction(SSVI, pick) / self.all[i].reduction(TMD, pick) - 1.0).abs()
     }
@@ -63,13 +63,13 @@ impl Structures<'_> {
         format!("reduction, k1 rising: SSVI NES {ssvi}; TMD {tmd}")
     }
 
-    /// The same beside those of the tuned one.
-    fn beside(&self, of: Range<usize>) -> String {
+    /// The reductions in words, with those at the tuned stiffness.
+    fn words_with_tuned(&self, of: Range<usize>) -> String {
         self.words(of, |scene| format!(" (tuned {:.2})", self.all[self.tuned].reduction(scene, FINEST)))
     }
 }
 
-/// Whether something holds of all structures of a range, with either damper.
+/// Whether a condition holds for all structures of a range, for each damper.
 fn with_each(of: &Range<usize>, holds: impl Fn(usize, usize, Pick) -> bool) -> [Option<bool>; 2] {
     DAMPERS.map(|scene| decided(|pick| of.clone().all(|i| holds(i, scene, pick))))
 }
@@ -82,7 +82,7 @@ fn tenths(share: f64) -> String {
     format!("{:.1} %", 100.0 * share)
 }
 
-/// Adds a statement whose parts are decided or not, under the rule of ladders.
+/// Adds a statement with the verdict on its parts, under the rule of ladders.
 fn decide(item: &mut Item, paper: &str, rule: &str, parts: &[Option<bool>], found: String) {
     item.statement(paper, &format!("{rule} {RULE}"), verdict(parts), found);
 }
@@ -135,7 +135,7 @@ fn at_the_tuned_stiffness(structures: &Structures, item: &mut Item) {
     let tuned = all[*tuned];
     let [none, ssvi, tmd] = &tuned.ladders;
     let (below, of) = tuned.family.share_below(SSVI, TMD);
-    // A damper that is higher on the finest frequencies is not the better one, whatever others near it are.
+    // A damper that is higher on the finest frequencies is not better, whatever the designs near it.
     let is_lower = || decided(|pick| pick(ssvi) < tmd.near.least.min(tmd.finest()));
     decide(
         item,
@@ -174,7 +174,7 @@ fn stiffer_structures(
     item: &mut Item,
 ) {
     let changes = |of: &Range<usize>, scene, pick| {
-        ends(of.clone().map(|i| (structures.left(i, scene, pick) - 1.0).abs()))
+        ends(of.clone().map(|i| (structures.remaining(i, scene, pick) - 1.0).abs()))
     };
     let most = |scene, pick| changes(&stiffer, scene, pick)[1];
     let least = |scene, pick| changes(softer, scene, pick)[0];
@@ -185,8 +185,8 @@ fn stiffer_structures(
         item,
         "Both dampers maintain their vibration reduction performance when k1 increases (conclusions)",
         "The paper gives no number. Holds if at least 90 % of the tuned reduction is left at every stiffer structure, with both dampers; in part if with one.",
-        &with_each(&stiffer, |i, scene, pick| structures.left(i, scene, pick) >= RETAINED),
-        structures.beside(stiffer.clone()),
+        &with_each(&stiffer, |i, scene, pick| structures.remaining(i, scene, pick) >= RETAINED),
+        structures.words_with_tuned(stiffer.clone()),
     );
     decide(
         item,
@@ -206,17 +206,17 @@ fn stiffer_structures(
 }
 
 fn softer_structures(structures: &Structures, softer: Range<usize>, item: &mut Item) {
-    let left = |i, pick| DAMPERS.map(|scene| structures.left(i, scene, pick));
+    let remaining = |i, pick| DAMPERS.map(|scene| structures.remaining(i, scene, pick));
     decide(
         item,
         "When k1 decreases the reduction worsens",
         "Holds if the reduction is smaller at every softer structure than at the tuned one, with both dampers; in part if with one.",
-        &with_each(&softer, |i, scene, pick| structures.left(i, scene, pick) < 1.0),
-        structures.beside(softer.clone()),
+        &with_each(&softer, |i, scene, pick| structures.remaining(i, scene, pick) < 1.0),
+        structures.words_with_tuned(softer.clone()),
     );
     let (mut places, mut losses) = (Vec::new(), Vec::new());
     for i in softer.clone() {
-        let (k1, shares) = (stiffness(structures.all[i].family.k1), left(i, FINEST));
+        let (k1, shares) = (stiffness(structures.all[i].family.k1), remaining(i, FINEST));
         let [ssvi, tmd] = shares.map(percent);
         places.push(format!(
             "k1 = {k1} N/m: {ssvi} of the tuned reduction is left to the SSVI NES, {tmd} to the TMD"
@@ -224,7 +224,8 @@ fn softer_structures(structures: &Structures, softer: Range<usize>, item: &mut I
         let [ssvi, tmd] = shares.map(|share| percent(1.0 - share));
         losses.push(format!("at k1 = {k1} N/m the SSVI NES loses {ssvi} of its reduction, the TMD {tmd}"));
     }
-    let is_each = |holds: fn([f64; 2]) -> bool| decided(|pick| softer.clone().all(|i| holds(left(i, pick))));
+    let is_each =
+        |holds: fn([f64; 2]) -> bool| decided(|pick| softer.clone().all(|i| holds(remaining(i, pick))));
     let greater = is_each(|[ssvi, tmd]| ssvi < tmd);
     let similar = is_each(|[ssvi, tmd]| (1.0 - ssvi / tmd).abs() <= SIMILAR);
     decide(
@@ -234,7 +235,7 @@ fn softer_structures(structures: &Structures, softer: Range<usize>, item: &mut I
         &[greater],
         joined(&places, "; "),
     );
-    let [_, most] = ends(softer.clone().map(|i| left(i, FINEST)).map(|[ssvi, tmd]| tmd / ssvi - 1.0));
+    let [_, most] = ends(softer.clone().map(|i| remaining(i, FINEST)).map(|[ssvi, tmd]| tmd / ssvi - 1.0));
     decide(
         item,
         "The deterioration is similar for both dampers, slightly greater for the SSVI NES (conclusions)",
@@ -252,14 +253,14 @@ fn all_structures(structures: &Structures, item: &mut Item) {
     let Structures { all, .. } = structures;
     let every = 0..all.len();
     let [least, least_tmd] = DAMPERS.map(|scene| {
-        let [least, _] = ends(every.clone().map(|i| structures.left(i, scene, FINEST)));
+        let [least, _] = ends(every.clone().map(|i| structures.remaining(i, scene, FINEST)));
         percent(least)
     });
     decide(
         item,
         "Both dampers retain their tuning",
         "The paper gives no number. Holds if at least 90 % of the tuned reduction is left at every stiffness, with both dampers; in part if with one.",
-        &with_each(&every, |i, scene, pick| structures.left(i, scene, pick) >= RETAINED),
+        &with_each(&every, |i, scene, pick| structures.remaining(i, scene, pick) >= RETAINED),
         format!(
             "least share left: SSVI NES {least}, TMD {least_tmd}: with a threshold at the lower of the two it would hold, between them in part"
         ),

@@ -105,7 +105,7 @@ fn orbit_chart(family: &Family, motions: &Motions, omega: (f64, f64)) -> Chart {
     };
     let from_rest = motions.orbits[0].iter().flat_map(points).collect();
     let from_rest = Layer::Dots { points: from_rest, colour: BLACK, size: 1.3 };
-    // What a sweep reaches is drawn where it is another motion than that from rest: elsewhere dots would hide dots.
+    // Motions of a sweep are drawn only where they differ from the one from rest: elsewhere dots would hide dots.
     let others = |start: usize, colour| {
         let reached =
             motions.coexisting.iter().filter(|here| here.motions.iter().any(|(other, _)| *other == start));
@@ -129,7 +129,7 @@ fn chart(title: String, omega: (f64, f64), y: Axis, layers: Vec<Layer>) -> Chart
     Chart { title, ..Chart::of(Axis::linear("ω, rad/s", omega), y, layers, 190.0) }
 }
 
-/// A strip on top, from a height on, coloured by the kind of motion from rest.
+/// A strip at the top, above `from`, coloured by the kind of motion from rest.
 fn strip(motions: &Motions, from: f64) -> Vec<Layer> {
     let omega = &motions.omega;
     let middle = |i: usize, j: usize| 0.5 * (omega[i] + omega[j]);
@@ -157,7 +157,7 @@ fn labels(motions: &Motions, natural: f64, (first, last): (f64, f64), heights: [
         let middle =
             if (middle - natural).abs() < half { natural + half.copysign(middle - natural) } else { middle };
         let x = middle.clamp(first + half, last - half);
-        // A label is placed above its own window, or omitted.
+        // A label that does not fit above its own window is omitted.
         if !(motions.omega[from]..=motions.omega[to]).contains(&x) {
             continue;
         }

@@ -27,7 +27,7 @@ pub fn figure6(plan: &Plan) -> Result<Item, Error> {
     let mut item =
         Item::new(plan.made_by(&format!("ω = {omega} rad/s, from rest, shown every {INTERVAL} s.")));
     over_time(plan, &scenes, &mut item)?;
-    // The exact maxima, not those of the rows that are drawn.
+    // The exact maxima, not those of the drawn samples.
     let largest = |scene: &Scene| -> Result<[f64; 3], Error> {
         let run = simulate(scene, plan.window(), &plan.settings())?;
         let [e1, e2] = [run.e1_max.value, run.e2_max.value];

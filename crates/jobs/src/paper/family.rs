@@ -63,14 +63,14 @@ impl Family {
         one.iter().zip(other).filter(move |(point, _)| (point.value - natural).abs() <= within)
     }
 
-    /// The share of the frequencies within the width c1/m1 of resonance on which a curve is below another, and that width, rad/s.
+    /// The share of the frequencies within the width c1/m1 of resonance at which a curve is below another, and that width, rad/s.
     pub fn share_below(&self, scene: usize, other: usize) -> (f64, f64) {
         let width = 2.0 * self.half_width;
         let pairs = self.near(&self.points[scene], &self.points[other], width);
         (share(pairs, |one, two| one.e1_max < two.e1_max), width)
     }
 
-    /// Where within the width c1/m1 of resonance a damper adds most energy: the frequency, and how many times that without it (`energy`).
+    /// The largest ratio of the energies with and without a damper within the width c1/m1 of resonance (`energy`), and its frequency.
     pub fn most_added(&self, scene: usize) -> Peak {
         self.near(&self.points[scene], &self.points[0], 2.0 * self.half_width)
             .map(|(with, without)| Peak { omega: with.value, energy: with.e1_max / without.e1_max })
@@ -114,7 +114,7 @@ impl Family {
     }
 }
 
-/// The share of some pairs of points for which something holds.
+/// The share of pairs of points for which `holds` is true.
 pub fn share<'a>(
     pairs: impl Iterator<Item = (&'a Point, &'a Point)>,
     holds: impl Fn(&Point, &Point) -> bool,

@@ -24,7 +24,7 @@ impl Item {
         Self { made_by, ..Self::default() }
     }
 
-    /// Its tables and its data: the name and the text of each file.
+    /// The files of its tables and data: name and text of each.
     pub fn files(&self, item: &str) -> Vec<(String, String)> {
         let table =
             |(i, (_, table)): (usize, &(_, Table))| (format!("{item}-table-{}.csv", i + 1), table.csv());

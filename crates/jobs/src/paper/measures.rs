@@ -1,5 +1,5 @@
-//! What a design is worth, J: at one frequency, near the design, and at its worst over a band; there on ever finer frequencies, and of
-//! designs that are practically equal, which says how far a worst can be trusted.
+//! Measures of a design, J: at one frequency, near the design, and the worst over a band. The worst is also taken on ever finer frequencies
+//! and for practically equal designs, which shows how far it can be trusted.
 
 use super::plan::{Plan, damper};
 use crate::Error;
@@ -24,7 +24,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Of some values; NaN of none.
+    /// The spread of some values; NaN without any.
     pub fn of(mut values: Vec<f64>) -> Self {
         values.sort_by(f64::total_cmp);
         let last = values.len().saturating_sub(1) as f64;
@@ -46,7 +46,7 @@ pub fn ends(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
     numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], one| [low.min(one), high.max(one)])
 }
 
-/// The worst over the band of the page.
+/// The objective of the page: the worst over [`BAND`].
 pub fn over_band(samples: usize, response: Response) -> Objective {
     let [from, to] = BAND.map(Positive::new);
     let omega = from.ok().zip(to.ok()).map(|(from, to)| FrequencyBand { from, to, samples, relative: false });
@@ -59,7 +59,7 @@ pub fn energy(scene: &Scene, window: Window, settings: &Settings) -> f64 {
     goal.evaluate(scene, settings, f64::INFINITY).map_or(f64::INFINITY, |found| found.value)
 }
 
-/// The same in the window of the plan.
+/// E1max of a scene at its frequency in the window of the plan.
 pub fn at_omega(plan: &Plan, scene: &Scene) -> f64 {
     energy(scene, plan.window(), &plan.settings())
 }
@@ -71,12 +71,12 @@ pub fn recorded(plan: &Plan, scene: &Scene, window: Window, interval: f64) -> Re
     Ok(samples)
 }
 
-/// A time or a number as it stands in data files: to a millionth, without the errors of a sum of intervals.
+/// A number as in data files: rounded to a millionth, without the rounding errors of summed intervals.
 pub fn rounded(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }
 
-/// The scene of the TMD with the mass of the paper's, k2 and c2 free, that has the least steady worst over the band at the tuned stiffness.
+/// The scene of the best TMD with the mass of the paper's: k2 and c2 minimise the steady worst case over the band at the tuned stiffness.
 pub fn best_tmd(plan: &Plan) -> Result<Scene, Error> {
     let scene = plan.tmd.scene;
     Ok(Scene { damper: Some(crate::retention::best_tmd(&scene, damper(&plan.tmd)?, BAND)?.0), ..scene })
@@ -88,34 +88,33 @@ pub fn tmd_words(scene: &Scene) -> String {
     })
 }
 
-/// The values of `members` scenes near one, each of whose k1, k2, c2, D and C are off by at most 0.1 %, which is less than the rounding
-/// of the printed D = 0.06 m.
+/// The values of `members` scenes whose k1, k2, c2, D and C are off by at most 0.1 %, less than the rounding of the printed D = 0.06 m.
 pub fn near(members: u32, scene: &Scene, value: impl Fn(&Scene) -> f64 + Sync) -> Spread {
     let ensemble = Ensemble { members, phases: false, errors: 1e-3, seed: 0, statistic: Statistic::Worst };
     let one = |i: u32| ensemble.member(scene, i).map_or(f64::INFINITY, |(scene, _)| value(&scene));
     Spread::of((0..members).into_par_iter().map(one).collect())
 }
 
-/// Designs within ±0.1 %.
+/// Number of designs within ±0.1 %.
 const MEMBERS: u32 = 21;
 
-/// What "decided" means, for the rules of statements.
+/// The meaning of "decided", for the rules of statements.
 pub const RULE: &str = "Each number is the largest on the finest frequencies (table); what does not hold as well at the least and at the largest of 21 designs within ±0.1 % cannot be decided.";
 
-/// The largest E1max on samples of a band, J: lower bounds, each of which a run reaches.
+/// The largest E1max on samples of a band, J: lower bounds of the worst case, each reached by a run.
 pub struct Ladder {
-    /// On the frequencies of the plan's ladder.
+    /// The values on the frequencies of the plan's ladder.
     values: Vec<f64>,
-    /// Of the practically equal designs.
+    /// The values of practically equal designs.
     pub near: Spread,
 }
 
 pub type Pick = fn(&Ladder) -> f64;
-/// Those that a verdict must hold on: the finest, and both ends of the spread.
+/// The numbers for which a verdict must hold: the finest, and both ends of the spread.
 const PICKS: [Pick; 3] = [Ladder::finest, |ladder| ladder.near.least, |ladder| ladder.near.largest];
 
 impl Ladder {
-    /// Of a scene over the frequencies of Figure 3.
+    /// The ladder of a scene over the frequencies of Figure 3.
     pub fn climb(plan: &Plan, scene: &Scene) -> Self {
         let near = near(MEMBERS, scene, |scene| sampled(plan, scene, middle(plan)));
         let values = plan.file.ladder.iter().map(|samples| sampled(plan, scene, *samples)).collect();
@@ -126,7 +125,7 @@ impl Ladder {
         self.values.last().copied().unwrap_or(f64::NAN)
     }
 
-    /// The range of the finest and the spread, in words.
+    /// The finest value and the spread, in words.
     pub fn words(&self) -> String {
         let Spread { least, largest, .. } = self.near;
         format!(
@@ -152,14 +151,14 @@ pub fn finest(plan: &Plan) -> usize {
     plan.file.ladder.last().copied().unwrap_or(2)
 }
 
-/// The largest on evenly spaced frequencies, J, without a search between them.
+/// The largest E1max on evenly spaced frequencies, J, without a search between them.
 pub fn sampled(plan: &Plan, scene: &Scene, samples: usize) -> f64 {
     let value = |omega| Parameter::Omega.at(*scene, omega).map_or(f64::NAN, |scene| at_omega(plan, &scene));
     let omega = evenly(plan.file.omega.from, plan.file.omega.to, samples);
     omega.into_par_iter().map(value).reduce(|| f64::NEG_INFINITY, f64::max)
 }
 
-/// What a statement is on the finest frequencies and at both ends of the spread, where it is the same on all three.
+/// Whether a statement holds; none unless it is the same on the finest frequencies and at both ends of the spread.
 pub fn decided(statement: impl Fn(Pick) -> bool) -> Option<bool> {
     let [finest, least, largest] = PICKS.map(statement);
     (finest == least && finest == largest).then_some(finest)

@@ -1,5 +1,5 @@
-//! The data of Figure 4: the motions of the SSVI NES over the frequencies around a resonance. Runs name a regime at each frequency; on
-//! the branch of its motions the ends of a periodic one are exact, with the bifurcation there.
+//! The data of Figure 4: the motions of the SSVI NES over the frequencies around a resonance. Runs give the regime at each frequency; the
+//! ends of periodic motions and their bifurcations are computed exactly along branches.
 
 use super::family::Family;
 use super::plan::{Plan, stiffness};
@@ -19,7 +19,7 @@ use retune_report::table::Table;
 
 /// The starts of motions: from rest, from the frequency below, from the frequency above.
 pub const STARTS: [&str; 3] = ["rest", "up", "down"];
-/// Periods that are drawn, and from which motions are first compared.
+/// Periods that are drawn, and by which motions are first compared.
 const RECORD: usize = 120;
 /// Periods to settle in, from rest and from the previous frequency. With a linear damper the transient has decayed after twenty.
 const SETTLE: [usize; 2] = [400, 150];
@@ -72,7 +72,7 @@ impl Motions {
         Ok(Self { omega, regimes: records.iter().map(classify).collect(), orbits, coexisting })
     }
 
-    /// Neighbouring frequencies with the same name: `(label, first, last)`.
+    /// Ranges of frequencies with the same regime: `(label, first, last)`.
     pub fn windows(&self) -> Vec<(String, usize, usize)> {
         let mut found: Vec<(String, usize, usize)> = Vec::new();
         for (i, regime) in self.regimes.iter().enumerate() {
@@ -91,8 +91,8 @@ impl Motions {
     }
 }
 
-/// Where the three orbits of a frequency differ, each is continued for as long as the record from rest, and compared again:
-/// transients have then decayed.
+/// The motions at a frequency, if there are several. Where its three orbits differ, each is continued for as long as the record from rest,
+/// so that transients have decayed, and compared again.
 fn coexisting(
     plan: &Plan,
     scene: &Scene,
@@ -122,22 +122,22 @@ fn coexisting(
     Ok((motions.len() > 1).then_some(Coexisting { index, motions }))
 }
 
-/// Of branches: frequencies at which runs are started, at most, and starts at each beside that from rest.
+/// For branches: the most frequencies at which runs are started, and the starts at each besides the one from rest.
 const SAMPLES: usize = 61;
 const OTHERS: usize = 4;
-/// The narrowest regime that is listed, as a share of the frequencies: a step of the figure.
+/// The narrowest regime listed, as a share of the range: a step of the figure.
 const NARROW: f64 = 1.0 / 200.0;
 
-/// A range of frequencies over which one branch has stable motions of one name.
+/// A range of frequencies over which a branch has stable motions with the same label.
 struct Part {
     label: String,
-    /// The frequencies, ascending, and what happens at either.
+    /// The two frequencies, ascending, and the event at each.
     ends: [(f64, &'static str); 2],
     /// Whether a run from rest ends on it.
     rest: bool,
 }
 
-/// Where periodic motions begin and end.
+/// The table of the ranges of periodic motions.
 pub fn begins(plan: &Plan, all: &[(Family, Motions)]) -> Result<Table, Error> {
     let found = of_each(all, &Silent, |(family, motions)| {
         let range = [motions.omega[0], motions.omega[motions.omega.len() - 1]];
@@ -172,8 +172,8 @@ pub fn begins(plan: &Plan, all: &[(Family, Motions)]) -> Result<Table, Error> {
     Ok(table)
 }
 
-/// Parts of one name that overlap or meet, as one, by their first frequency: those of a closed branch on either side of its first motion, or of a
-/// branch that was found from several motions.
+/// Joins parts with the same label that overlap or meet, sorted by frequency: those of a closed branch on either side of its first motion,
+/// or of a branch found from several motions.
 fn merged(mut parts: Vec<Part>) -> Vec<Part> {
     parts.sort_by(|a, b| a.label.cmp(&b.label).then(a.ends[0].0.total_cmp(&b.ends[0].0)));
     let mut found: Vec<Part> = Vec::new();
@@ -192,7 +192,7 @@ fn merged(mut parts: Vec<Part>) -> Vec<Part> {
     found
 }
 
-/// The parts of a branch with stable motions of one name; runs `from_rest` end on it at these frequencies.
+/// The parts of a branch with stable motions of one label; `from_rest` are the frequencies at which runs from rest end on it.
 fn stable_parts(branch: &Branch, from_rest: &[f64]) -> Vec<Part> {
     let event = |place: usize| branch.events.iter().find(|event| event.place == place);
     let last = branch.points.len() - 1;
@@ -210,10 +210,10 @@ fn stable_parts(branch: &Branch, from_rest: &[f64]) -> Vec<Part> {
     let mut found = Vec::new();
     let mut first = None;
     for place in 0..branch.points.len() {
-        let goes_on = branch.is_stable_after(place);
-        let ends = !goes_on || event(place).is_some_and(|event| event.kind == EventKind::Grazing);
+        let stable_after = branch.is_stable_after(place);
+        let ends = !stable_after || event(place).is_some_and(|event| event.kind == EventKind::Grazing);
         if let (Some(begin), true) = (first, ends) {
-            // At a grazing rounding decides whether the impact counts: the motion between the ends names the part.
+            // At a grazing rounding decides whether the impact counts, so the motion in the middle labels the part.
             let orbit = &branch.points[usize::midpoint(begin, place)];
             let struck = |wall: char| orbit.seen.impacts.matches(wall).count() as f64;
             let label = periodic_label(orbit.periods, ['S', 'O'].map(struck));
@@ -223,7 +223,7 @@ fn stable_parts(branch: &Branch, from_rest: &[f64]) -> Vec<Part> {
             found.push(Part { label, ends, rest });
             first = None;
         }
-        if goes_on && first.is_none() {
+        if stable_after && first.is_none() {
             first = Some(place);
         }
     }

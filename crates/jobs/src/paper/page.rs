@@ -1,4 +1,4 @@
-//! The items in their order, and the page that holds them.
+//! The list of items, and their page.
 
 use super::item::Item;
 use super::plan::{Plan, Tuner};
@@ -14,7 +14,7 @@ pub struct Entry {
     pub title: &'static str,
     /// What the paper shows.
     pub paper: &'static str,
-    /// The function that makes ours.
+    /// The function that makes the item.
     pub make: fn(&Plan, &mut Tuner) -> Result<Item, Error>,
 }
 
@@ -133,7 +133,7 @@ fn verdicts(items: &[(&'static Entry, Item)]) -> Block {
     Block::table("Every statement, and its verdict", ["item", "statement", "verdict"], rows.collect())
 }
 
-/// An item as a section: the first figure stands open, what lies behind it and its verdicts is unfolded by who wants it.
+/// An item as a section: the first figure is open, everything else folded.
 fn blocks(entry: &Entry, item: &Item) -> Vec<Block> {
     let mut blocks = vec![Block::About("In the paper", entry.paper.to_owned())];
     let folded = |subject: &str, inner: Vec<Block>| {

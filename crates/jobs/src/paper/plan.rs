@@ -1,4 +1,4 @@
-//! The study behind the page: the paper's two dampers, the family of stiffnesses, and how finely to look.
+//! The study behind the page: the paper's two dampers, the family of stiffnesses, and the resolution.
 
 use crate::{Error, Observer};
 use retune_model::{Contact, Damper, Design, Parameter, Scene};
@@ -57,27 +57,27 @@ pub struct Range {
     pub points: usize,
 }
 
-/// The design that the search of a study comes to.
+/// Runs the search of a study and returns its design.
 pub type Tuner<'a> = dyn FnMut(&Study) -> Result<Design, Error> + 'a;
 
-/// The plan with all that it names.
+/// The plan with the studies that it names.
 pub struct Plan<'a> {
     pub file: PaperPlan,
     pub ssvi: Study,
     pub tmd: Study,
-    /// Who follows.
+    /// The observer of the job.
     pub watch: &'a dyn Observer,
-    /// Whether only verdicts are wanted, on fewer points.
+    /// Whether only the verdicts are needed, on fewer points.
     pub is_brief: bool,
 }
 
-/// How many points are allowed.
+/// The allowed numbers of points.
 const POINTS: std::ops::RangeInclusive<usize> = 2..=100_000;
 
-/// Most steps of a run: a hundred times what the paper's runs take, so that one that chatters on a wall ends in seconds.
+/// Most steps of a run: a hundred times those of the paper's runs, so that a run that chatters on a wall ends in seconds.
 const MOST_STEPS: u64 = 1_000_000;
 
-/// Radii of the damper's surfaces for which results are repeated, m: the paper does not give its own.
+/// Radii of the damper's surfaces, m, for which results are repeated, since the paper does not state its radius.
 pub const RADII: [f64; 5] = [0.1, 0.5, 2.0, 5.0, 10.0];
 
 impl Range {
@@ -114,7 +114,7 @@ impl<'a> Plan<'a> {
         let studies: Result<[PaperStudy; 2], _> = rows.try_into();
         let [ssvi, tmd] =
             studies.map_err(|_| refuse("table2: must have two rows, the SSVI NES and the TMD"))?;
-        // The page has objectives of its own; of the studies it takes the scenes, the window and the solver.
+        // The page has its own objectives: only the scenes, the window and the solver are taken from the studies.
         let [ssvi, tmd] = [ssvi, tmd].map(|row| Study { optimize: None, ..row.study });
         Ok(Self { file, ssvi, tmd, watch, is_brief: false })
     }
@@ -143,17 +143,17 @@ impl<'a> Plan<'a> {
         self.ssvi.value_of(Parameter::R).unwrap_or(f64::NAN)
     }
 
-    /// The others of [`RADII`], m.
+    /// The [`RADII`] other than the plan's, m.
     pub fn other_radii(&self) -> impl Iterator<Item = f64> {
-        let own = self.radius();
-        RADII.into_iter().filter(move |radius| *radius != own)
+        let radius_of_plan = self.radius();
+        RADII.into_iter().filter(move |radius| *radius != radius_of_plan)
     }
 
     pub fn window(&self) -> Window {
         self.ssvi.window.window()
     }
 
-    /// From rest to the end of that window.
+    /// From rest to the end of the window.
     pub fn whole_run(&self) -> Window {
         Window { from: 0.0, ..self.window() }
     }
@@ -164,7 +164,7 @@ impl<'a> Plan<'a> {
         Settings { max_steps: settings.max_steps.min(MOST_STEPS), ..settings }
     }
 
-    /// What made an item, in words.
+    /// The settings behind an item, in words.
     pub fn made_by(&self, more: &str) -> String {
         let contact = self.ssvi.scene.damper.and_then(|damper| damper.contact);
         let surfaces = contact.as_ref().and_then(Contact::surfaces);

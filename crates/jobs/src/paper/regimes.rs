@@ -89,7 +89,7 @@ fn coexisting(all: &[(Family, Motions)]) -> Table {
     table
 }
 
-/// What is said of each stiffness, one after the other.
+/// Joins words on each stiffness.
 fn of_each(all: &[(Family, Motions)], words: impl Fn(&Family, &Motions) -> Vec<String>) -> String {
     let one = |(family, motions): &(Family, Motions)| {
         format!("k1 = {}: {}", stiffness(family.k1), joined(&words(family, motions), ", "))
@@ -196,7 +196,7 @@ fn statements(all: &[(Family, Motions)], item: &mut Item) {
     );
 }
 
-/// Whether periodic motions of two names or more have an irregular one between them.
+/// Whether there are periodic motions with at least two labels, and an irregular one between periodic ones.
 fn alternates(motions: &Motions) -> bool {
     let periodic = |i: &usize| motions.regimes[*i].kind == Kind::Periodic;
     let places: Vec<usize> = (0..motions.regimes.len()).filter(periodic).collect();

@@ -15,25 +15,24 @@ use retune_report::table::Table;
 use retune_report::{Nodes, Place, Scale, Sheet, Width, cells, heat_map};
 use retune_study::short;
 
-/// Nodes of a side at one frequency, and of the worst case.
+/// Nodes per side at one frequency, and in the worst case.
 const POINTS: [usize; 2] = [41, 31];
-/// The same where only the verdicts are wanted.
+/// Nodes per side where only the verdicts are needed.
 const BRIEF: [usize; 2] = [21, 16];
 /// Samples of the band of the worst case.
 const SAMPLES: usize = 31;
-/// Share of the nodes among which a point passes for an optimum that was read from a surface.
+/// A point counts as an optimum read from a surface if at most this share of the nodes is better.
 const AMONG: f64 = 0.05;
 
 struct Surface {
     name: &'static str,
     variables: [Parameter; 2],
     ranges: [(f64, f64); 2],
-    /// Stiffest spring of a node that is ranked in the worst case, N/m: of the TMD that of its row, of the SSVI NES a little above that of its
-    /// row.
+    /// Stiffest spring of the nodes ranked in the worst case, N/m: for the TMD that of its row, for the SSVI NES slightly more.
     stiffest: f64,
 }
 
-/// That of the TMD, and the two of the SSVI NES.
+/// The surface of the TMD, and the two of the SSVI NES.
 const SURFACES: [Surface; 3] = [
     Surface {
         name: "figure2-tmd",
@@ -68,7 +67,7 @@ struct Outcome {
     paper: Point,
     /// Whether the paper's point is no further than one step of the grid from the best node, in both directions.
     is_near: bool,
-    /// Nodes with springs no stiffer than those that are ranked, and those among them that are better than the paper's point.
+    /// Number of ranked nodes, and of those among them that are better than the paper's point.
     nodes: usize,
     better: usize,
 }

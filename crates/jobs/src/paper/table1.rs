@@ -1,5 +1,5 @@
-//! Table 1: the log of fminsearch, and the energies of the paper's rows; what the paper leaves out, tried: for which radius, frequency and
-//! window do its four rows have their four energies?
+//! Table 1: the log of fminsearch, and the energies of the paper's rows. What the paper leaves out is varied: for which radius, frequency
+//! and window do its four rows have their four energies?
 
 use super::item::Item;
 use super::measures::{Spread, at_omega, energy, near};
@@ -30,22 +30,22 @@ const PAPER: [([f64; 4], f64); 4] = [
 /// k2, c2, D and C of the optimum, the SSVI NES of Table 2.
 pub(crate) const TABLE_2: [f64; 4] = [215.0, 232.0, 0.06, 0.36];
 
-/// Radii, m, distances from the frequency of the study, rad/s, and the share of a run that passes before the window of its maxima.
+/// Radii, m, distances from the frequency of the study, rad/s, and shares of a run before the window of its maxima.
 const RADII: [f64; 6] = [0.1, 0.5, 1.0, 2.0, 5.0, 10.0];
 const BESIDE: [f64; 5] = [-0.02, -0.01, 0.0, 0.01, 0.02];
 const BEFORE: [f64; 3] = [0.0, 0.25, 0.5];
-/// Designs of each median.
+/// Number of designs of each median.
 const FEW: u32 = 51;
 const SHOWN: usize = 6;
 
-/// Designs within ±0.1 % of each row.
+/// Number of designs within ±0.1 % of each row.
 const PERTURBATIONS: u32 = 201;
 
-/// Seconds over which methods are compared, before a chaotic motion has magnified their errors.
+/// Time, s, over which methods are compared, before chaos has magnified their errors.
 const EARLY: f64 = 10.0;
 /// Tolerances of the methods, looser ones first.
 const TOLERANCES: [f64; 8] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9];
-/// Errors of the state at the end that the methods are compared at, relative.
+/// Relative errors of the final state at which the methods are compared.
 const ERRORS: [f64; 3] = [1e-1, 1e-2, 1e-3];
 /// The paper's method first, then an explicit one of its order, then one of a higher order.
 const METHODS: [(Method, &str); 3] =
@@ -53,7 +53,7 @@ const METHODS: [(Method, &str); 3] =
 
 pub fn table1(plan: &Plan) -> Result<Item, Error> {
     let mut item = Item::new(plan.made_by("MATLAB's fminsearch algorithm with its default tolerances."));
-    worth(plan, &mut item)?;
+    energies_of_rows(plan, &mut item)?;
     left_out(plan, &mut item)?;
     protocols(plan, &mut item)?;
     stiffness(plan, &mut item)?;
@@ -64,7 +64,7 @@ pub fn table1(plan: &Plan) -> Result<Item, Error> {
     Ok(item)
 }
 
-fn worth(plan: &Plan, item: &mut Item) -> Result<(), Error> {
+fn energies_of_rows(plan: &Plan, item: &mut Item) -> Result<(), Error> {
     let mut table = Table::headed(
         "row | k2, N/m | c2, N·s/m | D, m | C, m | paper: E1max, J | ours, J | whole run, J | parameters ±0.1 %, J | rtol 1e-6 … 1e-12, J | motion | exponent, 1/s",
     );
@@ -80,7 +80,7 @@ fn worth(plan: &Plan, item: &mut Item) -> Result<(), Error> {
         let of_digits = |digits| energy(&scene, plan.window(), &with(digits));
         let tolerances = Spread::of((6..=12).into_par_iter().map(of_digits).collect());
         let regime = classify(&follow(&scene, None, Stretch::default(), &plan.settings())?);
-        let worth = cells![
+        let values = cells![
             paper,
             format!("{:.1}", at_omega(plan, &scene)),
             format!("{:.1}", energy(&scene, plan.whole_run(), &plan.settings())),
@@ -89,7 +89,7 @@ fn worth(plan: &Plan, item: &mut Item) -> Result<(), Error> {
             regime.label(),
             format!("{:.2} ± {:.2}", regime.exponent.value, regime.exponent.error),
         ];
-        table.push([cells![i + 1], design.map(Cell::Number).into(), worth].concat());
+        table.push([cells![i + 1], design.map(Cell::Number).into(), values].concat());
         spreads.push(near);
     }
     bar.finish();
@@ -115,7 +115,7 @@ fn worth(plan: &Plan, item: &mut Item) -> Result<(), Error> {
     Ok(())
 }
 
-/// What the paper leaves out.
+/// The settings that the paper leaves out.
 #[derive(Clone, Copy, PartialEq)]
 struct Protocol {
     radius: f64,
@@ -123,7 +123,7 @@ struct Protocol {
     window: Window,
 }
 
-/// What the rows have under a protocol.
+/// The energies of the rows under a protocol.
 struct Outcome {
     protocol: Protocol,
     rows: Vec<Spread>,
@@ -134,12 +134,12 @@ struct Outcome {
 }
 
 impl Protocol {
-    fn own(plan: &Plan) -> Self {
+    fn of_plan(plan: &Plan) -> Self {
         let omega = plan.ssvi.scene.forcing.frequency.get();
         Self { radius: plan.radius(), omega, window: plan.window() }
     }
 
-    /// The four rows under it.
+    /// Evaluates the four rows.
     fn run(self, plan: &Plan) -> Result<Outcome, Error> {
         let Self { radius, omega, window } = self;
         let others = [(Parameter::R, radius), (Parameter::Omega, omega)];
@@ -156,12 +156,12 @@ impl Protocol {
 }
 
 impl Outcome {
-    /// Its window as a cell.
+    /// The window as a cell.
     fn window(&self) -> String {
         format!("{}–{}", self.protocol.window.from, self.protocol.window.to)
     }
 
-    /// The medians of its rows as cells.
+    /// The medians of the rows as cells.
     fn medians(&self, digits: usize) -> Vec<Cell> {
         self.rows.iter().map(|row| Cell::Text(format!("{:.digits$}", row.median))).collect()
     }
@@ -169,8 +169,8 @@ impl Outcome {
 
 /// The scene of a row of the paper's Table 1, with other values of further parameters.
 fn row(plan: &Plan, design: [f64; 4], others: &[(Parameter, f64)]) -> Result<Scene, Error> {
-    let own = Parameter::PAPER.into_iter().zip(design);
-    plan.ssvi_with(&own.chain(others.iter().copied()).collect::<Vec<_>>())
+    let design_values = Parameter::PAPER.into_iter().zip(design);
+    plan.ssvi_with(&design_values.chain(others.iter().copied()).collect::<Vec<_>>())
 }
 
 /// The medians of the four rows under ±0.1 % for other radii and for the whole run: values that the paper does not state change
@@ -179,10 +179,10 @@ fn left_out(plan: &Plan, item: &mut Item) -> Result<(), Error> {
     let mut table = Table::headed("R, m | window, s | row 1, J | row 2, J | row 3, J | row 4, J");
     let printed = PAPER.map(|(_, printed)| Cell::Text(format!("{printed:.1}")));
     table.push([cells!["the paper", ""], printed.into()].concat());
-    let own = Protocol::own(plan);
-    let whole = Protocol { window: plan.whole_run(), ..own };
-    let radii = plan.other_radii().map(|radius| Protocol { radius, ..own });
-    for protocol in [own, whole].into_iter().chain(radii) {
+    let of_plan = Protocol::of_plan(plan);
+    let whole = Protocol { window: plan.whole_run(), ..of_plan };
+    let radii = plan.other_radii().map(|radius| Protocol { radius, ..of_plan });
+    for protocol in [of_plan, whole].into_iter().chain(radii) {
         let outcome = protocol.run(plan)?;
         table.push([cells![protocol.radius, outcome.window()], outcome.medians(0)].concat());
     }
@@ -192,17 +192,17 @@ fn left_out(plan: &Plan, item: &mut Item) -> Result<(), Error> {
 
 /// Adds the table of protocols and the statement that it decides.
 fn protocols(plan: &Plan, item: &mut Item) -> Result<(), Error> {
-    let own = Protocol::own(plan);
-    let to = own.window.to;
+    let of_plan = Protocol::of_plan(plan);
+    let to = of_plan.window.to;
     let mut wanted = Vec::new();
     for radius in RADII {
-        for omega in BESIDE.map(|beside| own.omega + beside) {
+        for omega in BESIDE.map(|beside| of_plan.omega + beside) {
             let window = |share| Window { from: share * to, to };
             wanted.extend(BEFORE.map(|share| Protocol { radius, omega, window: window(share) }));
         }
     }
-    if !wanted.contains(&own) {
-        wanted.push(own);
+    if !wanted.contains(&of_plan) {
+        wanted.push(of_plan);
     }
     let mut all = in_a_stage((plan.watch, "table 1, protocols"), &wanted, |protocol| protocol.run(plan))?;
     all.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
@@ -210,7 +210,7 @@ fn protocols(plan: &Plan, item: &mut Item) -> Result<(), Error> {
     let mut table = Table::headed(
         "R, m | ω, rad/s | window, s | row 1, J | row 2, J | row 3, J | row 4, J | misfit, % | rows within ±0.1 %",
     );
-    for (_, of) in all.iter().enumerate().filter(|(i, of)| *i < SHOWN || of.protocol == own) {
+    for (_, of) in all.iter().enumerate().filter(|(i, of)| *i < SHOWN || of.protocol == of_plan) {
         let first = cells![of.protocol.radius, format!("{:.2}", of.protocol.omega), of.window()];
         let last = cells![format!("{:.1}", 100.0 * of.misfit), format!("{} of 4", of.inside)];
         table.push([first, of.medians(1), last].concat());
@@ -221,7 +221,7 @@ fn protocols(plan: &Plan, item: &mut Item) -> Result<(), Error> {
     item.table(&caption, table);
     let most = all.iter().map(|of| of.inside).max().unwrap_or(0);
     let misfit = |of: Option<&Outcome>| of.map_or(f64::NAN, |of| of.misfit);
-    let (best, ours) = (misfit(all.first()), misfit(all.iter().find(|of| of.protocol == own)));
+    let (best, ours) = (misfit(all.first()), misfit(all.iter().find(|of| of.protocol == of_plan)));
     item.conjecture(
         "the four rows have their energies under some radius, frequency and window",
         "Holds if under one of these protocols each of the four printed energies lies within what designs within ±0.1 % have; in part if the medians are within 2 % (root mean square) under one.",
@@ -240,7 +240,7 @@ fn protocols(plan: &Plan, item: &mut Item) -> Result<(), Error> {
     Ok(())
 }
 
-/// "This stiff set of equations is integrated with the stiff solver ode23s": what that costs beside explicit methods.
+/// "This stiff set of equations is integrated with the stiff solver ode23s": its cost compared with explicit methods.
 fn stiffness(plan: &Plan, item: &mut Item) -> Result<(), Error> {
     let window = Window { from: 0.0, to: EARLY.min(plan.window().to) };
     let scene = plan.ssvi.scene;
@@ -256,7 +256,7 @@ fn stiffness(plan: &Plan, item: &mut Item) -> Result<(), Error> {
             let error = run.final_state.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             runs.push((rtol, error / size, run.work.evaluations));
         }
-        // The loosest tolerance from which on every tighter one comes as near: a lucky run does not count.
+        // The loosest tolerance for which it and all tighter ones reach the error, so that a lucky run does not count.
         let costs = ERRORS.map(|most| {
             let first = runs.iter().rposition(|(_, error, _)| *error > most).map_or(0, |last| last + 1);
             let cost = runs.get(first).map(|(rtol, _, count)| (*count, format!("{count} (rtol {rtol:e})")));

@@ -1,4 +1,4 @@
-//! Table 2: both dampers tuned again, and in which sense the paper's rows are optimal.
+//! Table 2: both dampers re-tuned, and in which sense the paper's rows are optimal.
 
 use super::item::Item;
 use super::measures::{Ladder, Spread, at_omega, energy, finest, ladder_table, over_band, sampled};
@@ -20,14 +20,14 @@ struct Row {
     origin: &'static str,
     design: Design,
     /// E1max at ω = 6.28, over the whole run, and the worst over ω on the finest frequencies, J.
-    worth: [f64; 3],
+    values: [f64; 3],
     /// The worst over ω on ever finer frequencies.
     ladder: Ladder,
-    /// The same of the design as the table prints it, on the finest frequencies, J.
+    /// The worst over ω of the design as printed in the table, on the finest frequencies, J.
     printed: f64,
 }
 
-/// The rows: the damper, the origin of its design in words, and the name of the search that comes to it unless it is the paper's.
+/// The rows: the damper, the origin of its design in words, and the name of its search; none for the paper's design.
 const ROWS: [(&str, &str, Option<&str>); 8] = [
     (SSVI, "the paper's", None),
     (SSVI, "re-optimised, ω = 6.28", Some("ssvi-one-omega")),
@@ -58,16 +58,16 @@ pub fn table2(plan: &Plan, tuned: &mut Tuner) -> Result<Item, Error> {
         let as_printed = as_printed.ok().and_then(|design| base.scene_at(&design)).unwrap_or(scene);
         let ladder = Ladder::climb(plan, &scene);
         let whole = energy(&scene, plan.whole_run(), &plan.settings());
-        let worth = [at_omega(plan, &scene), whole, ladder.finest()];
+        let values = [at_omega(plan, &scene), whole, ladder.finest()];
         let printed = sampled(plan, &as_printed, finest(plan));
-        rows.push(Row { damper: name, origin, design, worth, ladder, printed });
+        rows.push(Row { damper: name, origin, design, values, ladder, printed });
         bar.inc(1);
     }
     bar.finish();
-    let designs = rows.iter().map(|Row { damper, origin, design, worth, .. }| {
-        let values = design.values().map(|value| Cell::Number(printed(value)));
-        let worth = worth.map(|value| Cell::Text(format!("{value:.1}")));
-        [cells![*damper, *origin], values.into(), worth.into()].concat()
+    let designs = rows.iter().map(|Row { damper, origin, design, values, .. }| {
+        let parameters = design.values().map(|value| Cell::Number(printed(value)));
+        let values = values.map(|value| Cell::Text(format!("{value:.1}")));
+        [cells![*damper, *origin], parameters.into(), values.into()].concat()
     });
     let head = "damper | origin | k2, N/m | c2, N·s/m | D, m | C, m | E1max at ω = 6.28, J | whole run, J | worst E1max over ω, finest, J";
     item.table("Designs and what they are worth, by three objectives", Table::headed(head).with(designs));
@@ -87,7 +87,7 @@ pub fn table2(plan: &Plan, tuned: &mut Tuner) -> Result<Item, Error> {
     Ok(item)
 }
 
-/// The study of a search, which starts at the design of the paper's or near it.
+/// The study of a search, which starts at the paper's design or near it.
 fn searched(base: &Study, damper_name: &str, search: &str) -> Result<Study, Error> {
     // The best node of Figure 2's surface over k2 and c2, rounded.
     let stiffer = [Setting::new(Parameter::K2, 500.0), Setting::new(Parameter::C2, 160.0)];
@@ -103,7 +103,7 @@ fn searched(base: &Study, damper_name: &str, search: &str) -> Result<Study, Erro
     };
     let mut bounds = PerVariable::default();
     for &variable in vary {
-        // N/m: that of the paper's TMD, its stiffest.
+        // N/m: the k2 of the paper's TMD.
         let most = (search == BOUNDED && variable == Parameter::K2).then_some(600.0);
         bounds.set(variable, Some((0.0, Some(most.unwrap_or(20.0 * variable.get(&start))))));
     }
@@ -117,28 +117,28 @@ fn searched(base: &Study, damper_name: &str, search: &str) -> Result<Study, Erro
     Ok(Study { name: Some(search.to_owned()), optimize: Some(optimize), ..base })
 }
 
-/// A value as the table prints it.
+/// A value as printed in the table.
 fn printed(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }
 
-/// Values that differ by no more than this share count as equal: the rows are printed to two or three digits.
+/// Values that differ by at most this share count as equal, since the rows are printed to two or three digits.
 const ROUNDING: f64 = 0.01;
 
 fn statements(rows: &[Row; 8], bare: f64, item: &mut Item) {
     let optimal = |paper: f64, best: f64| (1.0 - ROUNDING) * paper < best;
     let [ssvi, at_one, at_all, stiffer, tmd, bounded, free, tmd_at_one] = rows;
-    let [own, _, worst] = ssvi.worth;
-    let [least, _, elsewhere] = at_one.worth;
+    let [own, _, worst] = ssvi.values;
+    let [least, _, elsewhere] = at_one.values;
     item.statement(
         "The SSVI NES's row is optimal: no smaller E1max at ω = 6.28 rad/s",
         "Holds if fminsearch, started there, finds nothing smaller by more than 1 %: the row is printed to two or three digits.",
         Verdict::of(optimal(own, least)),
         format!("E1max {own:.0} J; a design close by reaches {least:.0} J at this frequency, but {elsewhere:.0} J at its worst"),
     );
-    let (scatter, [_, _, tuned]) = (&ssvi.ladder.near, at_all.worth);
+    let (scatter, [_, _, tuned]) = (&ssvi.ladder.near, at_all.values);
     let Spread { least, largest, .. } = *scatter;
-    let is_better = tuned.min(stiffer.worth[2]) < least;
+    let is_better = tuned.min(stiffer.values[2]) < least;
     item.statement(
         "The SSVI NES's row is optimal: no smaller worst case over ω",
         "Fails if a design is better by more than the scatter, the least of 21 designs within ±0.1 % of the row. Otherwise in part: the search is local and coarse, so it cannot show that nothing better exists.",
@@ -150,7 +150,7 @@ fn statements(rows: &[Row; 8], bare: f64, item: &mut Item) {
     );
     let [k2, c2, ..] = bounded.design.values();
     let [free_k2, free_c2, ..] = free.design.values();
-    let [paper, bounded, free] = [tmd, bounded, free].map(|row| row.worth[2]);
+    let [paper, bounded, free] = [tmd, bounded, free].map(|row| row.values[2]);
     item.statement(
         "The TMD's row is optimal",
         "Holds if no worst case over ω with k2 and c2 both free is smaller by more than 1 %; in part if none is with k2 at most that of the row.",
@@ -162,8 +162,8 @@ fn statements(rows: &[Row; 8], bare: f64, item: &mut Item) {
         format!(
             "with k2 at most 600 N/m it is the best in the worst case over ω (ours k2 = {k2:.1} N/m, c2 = {c2:.1} N·s/m, {bounded:.1} J against {paper:.1} J); but with k2 free, k2 = {free_k2:.0} N/m and c2 = {free_c2:.0} N·s/m give {free:.0} J, {:.1} times less; at ω = 6.28 rad/s alone the best TMD has hardly any damping ({:.0} J there, {:.0} J at its worst)",
             paper / free,
-            tmd_at_one.worth[0],
-            tmd_at_one.worth[2]
+            tmd_at_one.values[0],
+            tmd_at_one.values[2]
         ),
     );
     let halves = |row: &Row| row.ladder.finest().max(row.ladder.near.largest) < 0.5 * bare;

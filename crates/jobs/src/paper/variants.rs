@@ -1,5 +1,5 @@
-//! What the paper leaves out, for the statements on all figures: each verdict again under other radii R, other windows of the maxima, and with contacts that lose
-//! energy, as those of every real damper do.
+//! Repeats the verdicts on all figures under settings that the paper leaves out: other radii R, other windows of the maxima, and contacts
+//! that lose energy, as in every real damper.
 
 use super::item::Item;
 use super::plan::{Plan, RADII, Range};
@@ -13,11 +13,11 @@ use retune_report::table::{Cell, Table};
 use retune_study::{Settable, Setting, Study, joined, short};
 use std::collections::BTreeMap;
 
-/// The shares of a run that pass before a window of its maxima, beside that of the study.
+/// Shares of a run before the window of its maxima, besides the study's.
 const BEFORE: [f64; 2] = [0.0, 0.25];
-/// A restitution of contacts such as is measured on steel and hard rubber.
+/// A restitution of contacts as measured on steel and hard rubber.
 const RESTITUTION: f64 = 0.7;
-/// Frequencies on which worst cases are looked at, and of motions and curves at most: fewer than on the rest of the page.
+/// Most frequencies of worst cases and of motions, and most points of curves: fewer than on the rest of the page.
 const LADDER: usize = 301;
 const MOTIONS: usize = 41;
 const POINTS: usize = 36;
@@ -62,7 +62,7 @@ pub fn figures(plan: &Plan) -> Result<Item, Error> {
                 let same = |other: &&mut Verdicts| other.figure == figure && other.paper == statement.paper;
                 match verdicts.iter_mut().find(same) {
                     Some(known) => known.all.push(statement.verdict),
-                    // A statement that is new here was not made under the settings before.
+                    // A new statement is ignored here, since it was not made under the first settings.
                     None if number == 0 => {
                         let (paper, all) = (statement.paper, vec![statement.verdict]);
                         verdicts.push(Verdicts { figure, paper, all });
@@ -100,7 +100,7 @@ fn brief<'a>(plan: &Plan, change: &Setting, quiet: &'a dyn Observer) -> Result<P
     Ok(Plan { file, ssvi: changed(&plan.ssvi)?, tmd: changed(&plan.tmd)?, watch: quiet, is_brief: true })
 }
 
-/// How many verdicts are the same under all settings, and which are not.
+/// The number of verdicts that are the same under all settings, and the others, in words.
 fn summary(verdicts: &[Verdicts]) -> String {
     let mut changing = Vec::new();
     for Verdicts { figure, paper, all } in verdicts {

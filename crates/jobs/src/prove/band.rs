@@ -1,4 +1,5 @@
-//! The search for pieces of a band of frequencies, each of which is proven at once. It only looks for what `retune_proof` can prove, and rests on nothing itself.
+//! The search for pieces of a band of frequencies, each proven as a whole. It only finds what `retune_proof` can prove; no proof depends on
+//! it.
 
 use retune_model::{Bare, Coupled, Scene};
 use retune_proof::{
@@ -6,20 +7,21 @@ use retune_proof::{
 };
 use serde::{Serialize, Serializer};
 
-/// The longest piece and the shortest, rad/s.
+/// The longest and the shortest piece, rad/s.
 const LONGEST: f64 = 0.05;
 const SHORTEST: f64 = 2e-5;
-/// By how much a piece is longer than the last one, or shorter where the last one failed.
+/// Factors on the length of a piece after a success and after a failure.
 const LONGER: f64 = 1.4;
 const SHORTER: f64 = 0.5;
-/// What is left out where no piece can be proven, rad/s; twice as much each time that nothing beyond can be proven either, up to the most.
+/// First and largest width left out where no piece can be proven, rad/s; it doubles while nothing beyond can be proven either.
 const LEFT_OUT: [f64; 2] = [1e-4, 0.01];
-/// Of steady motions, by which share the bound on E1max may exceed what it is in doubles, and the shortest piece that is halved for that, rad/s.
+/// For steady motions: allowed relative excess of the bound on E1max over its value in doubles, and the shortest piece, rad/s, halved to
+/// reach it.
 const TIGHT: f64 = 1e-9;
 const HALVED: f64 = 2e-6;
-/// The longest piece that is tried after it, in what was left out: motions change fast next to a bifurcation.
+/// The longest piece tried after a gap, as a multiple of the gap: motions change fast next to a bifurcation.
 const AFTER: f64 = 8.0;
-/// A multiplier whose size is as near to 1 as this tells of a bifurcation nearby.
+/// Distance of the modulus of a multiplier from 1 that indicates a bifurcation nearby.
 const CRITICAL: f64 = 0.01;
 
 /// A piece of the band over which a family of motions is proven: at each of its frequencies there is exactly one in a box.
@@ -31,18 +33,18 @@ pub struct Piece {
     pub periods: usize,
     /// The walls that it strikes in turn.
     pub impacts: String,
-    /// Bounds that hold at all frequencies: the largest value at each is in them.
+    /// Bounds on the largest values that hold at all frequencies.
     pub largest: Largest,
-    /// No multiplier is larger than this, and all are below 1.
+    /// A bound below 1 on all multipliers.
     pub multipliers: f64,
 }
 
-/// What was proven of a band.
+/// The proof over a band.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Band {
     /// The pieces, in the order of their frequencies.
     pub pieces: Vec<Piece>,
-    /// What they leave out.
+    /// The parts left out.
     pub left_out: Vec<LeftOut>,
 }
 
@@ -51,28 +53,28 @@ pub struct Band {
 pub struct LeftOut {
     /// From where to where, rad/s.
     pub omega: [f64; 2],
-    /// Why not, where it begins.
+    /// Why not, at its lower end.
     pub why: Why,
-    /// Why not where it ends, if motions are proven from there on and were followed back to it.
+    /// Why not, at its upper end, if motions proven beyond it were followed back to it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from_above: Option<Why>,
 }
 
-/// Why nothing is proven of a part of a band.
+/// Why nothing is proven over a part of a band.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Why {
     /// The proof fails.
     #[error("{0}{near}", near = next_to(.0))]
     Failure(#[from] Failure),
-    /// A motion may have more energy than it is to have: bounds on it, and what it is to have at most.
+    /// The energy of a motion may exceed the wanted bound: its bounds, and the wanted one.
     #[error("the motion may have an E1max of {bound} J, and at most {1} J are to be proven", bound = .0.hi())]
     Above(Interval, f64),
-    /// No motion to prove anything of.
+    /// There is no motion to prove.
     #[error("none found: the run settles on no periodic motion")]
     NoGuess,
 }
 
-/// Which bifurcation is nearby by the largest multiplier, which is computed, of a motion that is not proven to be stable.
+/// The bifurcation nearby, judged by the computed largest multiplier of a motion that is not proven stable.
 fn next_to(failure: &Failure) -> &'static str {
     match *failure {
         Failure::NotStable(Multiplier { re, im, .. }) if (re.hypot(im) - 1.0).abs() < CRITICAL => {
@@ -92,11 +94,11 @@ impl Serialize for Why {
     }
 }
 
-/// A guess at a frequency.
+/// Gives a guess of the motion at a frequency.
 pub type Guesses<'a> = &'a (dyn Fn(f64) -> Option<Guess> + Sync);
 
-/// Proves stable motions with an E1max of at most `most` (J) over a band, as far as it can. A motion is followed from piece to piece, which need not be one branch:
-/// where it is lost, a new one is guessed beyond, and followed to both sides.
+/// Proves stable motions with an E1max of at most `most` (J) over a band, as far as possible. Motions are followed from piece to piece, not
+/// necessarily along one branch: where one is lost, a new one is guessed beyond and followed both ways.
 pub fn band(scene: &Scene, [from, to]: [f64; 2], most: f64, guesses: Guesses<'_>) -> Band {
     let task = Task { scene, most, guesses };
     let (mut band, mut at, mut gap, mut length) = (Band::default(), from, LEFT_OUT[0], LONGEST);
@@ -126,14 +128,14 @@ pub fn band(scene: &Scene, [from, to]: [f64; 2], most: f64, guesses: Guesses<'_>
     band
 }
 
-/// Proves the steady motions over a band, where the damper touches no wall at any of its frequencies, or there is none. None if that is not proven of the scene.
+/// Proves the steady motions over a band, if there is no damper or it touches no wall at any frequency; none if that cannot be proven.
 ///
 /// # Errors
 /// The proof does not cover such scenes.
 pub fn steady_band(scene: &Scene, omega: [f64; 2], most: f64) -> Result<Option<Band>, Failure> {
     match prove_steady(scene, omega) {
         Err(Failure::Undamped) => return Ok(None),
-        // Walls that are touched over the whole band may not be touched over parts of it.
+        // A proof that fails over the whole band because of contacts may succeed over its parts.
         Ok(_) | Err(Failure::Graze(..)) => {}
         Err(why) => return Err(why),
     }
@@ -141,14 +143,15 @@ pub fn steady_band(scene: &Scene, omega: [f64; 2], most: f64) -> Result<Option<B
         Some(damper) => Coupled::new(&scene.primary, &scene.forcing, damper).steady_e1_max(omega),
         None => Bare::new(&scene.primary, &scene.forcing).steady_e1_max(omega),
     };
-    // How far pieces are halved; no bound rests on it.
+    // Decides how far pieces are halved; no bound depends on it.
     let goal = most.min((1.0 + TIGHT) * worst.value);
     let mut band = Band::default();
     Ok(band.covers(scene, omega, [goal, most])?.then_some(band))
 }
 
 impl Band {
-    /// Adds the steady motions over a part, in pieces that have no more energy than a goal, if they are long enough to be halved. Whether all touch no wall.
+    /// Adds the steady motions over a part, halving pieces until their energy is at most `goal` or they are too short. Returns whether it
+    /// is proven that none touches a wall.
     fn covers(
         &mut self,
         scene: &Scene,
@@ -175,7 +178,7 @@ impl Band {
         }
     }
 
-    /// Bands that follow one another, as one.
+    /// Joins consecutive bands.
     pub fn joined(parts: Vec<Self>) -> Self {
         parts.into_iter().fold(Self::default(), |mut all, part| {
             all.pieces.extend(part.pieces);
@@ -184,7 +187,7 @@ impl Band {
         })
     }
 
-    /// Adds a part, as one with that before it if they meet.
+    /// Adds a part left out, joined to the one before if they meet.
     fn leave_out(&mut self, part: LeftOut) {
         match self.left_out.last_mut() {
             Some(last) if last.omega[1] == part.omega[0] => {
@@ -194,28 +197,28 @@ impl Band {
         }
     }
 
-    /// Bounds on the largest E1max over the frequencies of all pieces, J: what one of them has at least, and what none exceeds; zero if there are none.
+    /// Bounds on the largest E1max over all pieces, J; zero if there are none.
     pub fn energy(&self) -> Interval {
         self.pieces.iter().fold(Interval::ZERO, |most, piece| most.max(piece.largest.energy))
     }
 }
 
 impl Piece {
-    /// What is proven of each frequency of a piece.
+    /// A piece from the theorem proven over it.
     fn new(omega: [f64; 2], theorem: Theorem) -> Result<Self, Failure> {
         let Theorem { periods, impacts, largest, stability, .. } = theorem;
         Ok(Self { omega, periods, impacts, largest, multipliers: stability.stable()? })
     }
 }
 
-/// What is to be proven.
+/// The claim to prove.
 struct Task<'a> {
     scene: &'a Scene,
     most: f64,
     guesses: Guesses<'a>,
 }
 
-/// Pieces in turn, the family of the first, and where and why nothing more can be proven.
+/// Consecutive pieces, the family of the first, and where and why the proof stopped.
 struct March {
     pieces: Vec<Piece>,
     first: Option<Family>,
@@ -223,20 +226,20 @@ struct March {
 }
 
 impl Task<'_> {
-    /// Pieces from a frequency up or down to another one, from a family next to them or a guess.
-    fn march(&self, [from, to]: [f64; 2], longest: f64, beside: Option<Family>) -> March {
-        let (mut pieces, mut first, mut last) = (Vec::new(), None, beside);
+    /// Proves pieces from one frequency up or down to another, starting from a neighbouring family or a guess.
+    fn march(&self, [from, to]: [f64; 2], longest: f64, neighbour: Option<Family>) -> March {
+        let (mut pieces, mut first, mut last) = (Vec::new(), None, neighbour);
         let (mut at, mut length) = (from, longest);
         while at != to {
             let end = if (to - at).abs() <= 1.01 * length { to } else { at + length.copysign(to - at) };
             let omega = [at.min(end), at.max(end)];
             match self.piece(omega, last.as_ref()) {
-                Ok((piece, own)) => {
+                Ok((piece, family)) => {
                     pieces.push(piece);
-                    first.get_or_insert_with(|| own.clone());
-                    (at, last, length) = (end, Some(own), (LONGER * (end - at).abs()).min(LONGEST));
+                    first.get_or_insert_with(|| family.clone());
+                    (at, last, length) = (end, Some(family), (LONGER * (end - at).abs()).min(LONGEST));
                 }
-                // All motions of the piece have more.
+                // All motions of the piece exceed the bound.
                 Err(why) if matches!(why, Why::Above(energy, most) if energy.lo() > most) => {
                     return March { pieces, first, stop: Some((end, why)) };
                 }
@@ -249,7 +252,7 @@ impl Task<'_> {
         March { pieces, first, stop: None }
     }
 
-    /// A piece, and its family.
+    /// Proves one piece; returns it with its family.
     fn piece(&self, omega: [f64; 2], last: Option<&Family>) -> Result<(Piece, Family), Why> {
         let start = match last {
             Some(family) => Start::Beside(family),

@@ -1,4 +1,4 @@
-//! E1max along k1, with its cliffs: where neighbouring values differ, more stiffnesses are looked at between them, until a jump is narrow.
+//! E1max along k1, with its cliffs: intervals where neighbouring values differ much are bisected until the jump is narrow.
 
 use super::tuned::{BANDS, OWN, Tuned, Tuning, bare, energy};
 use crate::columns;
@@ -6,23 +6,23 @@ use rayon::prelude::*;
 use retune_report::cells;
 use retune_report::table::{Cell, Table};
 
-/// Number of equidistant stiffnesses that are looked at first, besides those that were tuned for.
+/// Number of equidistant stiffnesses evaluated first, besides those tuned for.
 const ALONG: usize = 61;
-/// Neighbouring values that differ by less, as a share of the smaller, are joined by a line.
+/// Relative difference of neighbouring values above which the interval between them is refined.
 const JUMP: f64 = 0.1;
-/// A jump between stiffnesses that are nearer than this share is a cliff, and drawn as a step.
+/// Relative width below which an interval with a jump is a cliff and not refined further.
 const NARROW: f64 = 5e-4;
-/// Most stiffnesses between the first ones. Where motions are irregular, E1max jumps everywhere, and no number is enough.
+/// Most stiffnesses added by refinement. Where motions are irregular, E1max jumps everywhere, and no number is enough.
 const MORE: usize = 240;
 
 /// E1max of a design along k1.
 #[derive(Debug)]
 pub struct Curve {
-    /// The number of its damper; none without a damper.
+    /// The index of its damper; none without a damper.
     pub damper: Option<usize>,
     /// How the damper was tuned.
     pub tuning: Tuning,
-    /// The number of its band.
+    /// The index of its band.
     pub band: usize,
     /// Stiffness, N/m, and E1max, J; NaN where it cannot be run.
     pub points: Vec<(f64, f64)>,
@@ -35,7 +35,7 @@ impl Curve {
     }
 }
 
-/// The cliffs of some points: stiffnesses between which E1max more than doubles or halves within [`NARROW`], and the values on both sides.
+/// The cliffs of a curve: pairs of neighbouring points within about [`NARROW`] between which E1max more than doubles or halves.
 pub fn cliffs(points: &[(f64, f64)]) -> impl Iterator<Item = [(f64, f64); 2]> {
     let doubles = |[(from, one), (to, other)]: &[(f64, f64); 2]| {
         to - from <= 2.0 * NARROW * to && (*one > 2.0 * other || *other > 2.0 * one)
@@ -43,8 +43,8 @@ pub fn cliffs(points: &[(f64, f64)]) -> impl Iterator<Item = [(f64, f64); 2]> {
     points.windows(2).map(|pair| [pair[0], pair[1]]).filter(doubles)
 }
 
-/// All curves: without a damper, by the study of the first; then of each damper those that are kept and that which is tuned anew; last those
-/// of the designs that are kept with bands that stay where they are.
+/// All curves: without a damper, by the study of the first damper; then for each damper those of the kept designs and of the re-tuned ones;
+/// last those without a damper and of the kept designs with a fixed band.
 pub fn curves(dampers: &[Tuned]) -> Vec<Curve> {
     let stops: Vec<f64> = dampers.iter().flat_map(|damper| damper.anew.iter().map(|(k1, _)| *k1)).collect();
     let mut all = Vec::new();
@@ -68,7 +68,7 @@ pub fn curves(dampers: &[Tuned]) -> Vec<Curve> {
     all
 }
 
-/// Values between the least and the largest of some stiffnesses, at these, evenly spaced, and more where they jump.
+/// Values along k1: at `stops`, at evenly spaced stiffnesses over their range, and at more where they jump.
 fn along(stops: &[f64], value: impl Fn(f64) -> f64 + Sync) -> Vec<(f64, f64)> {
     let [low, high] = [f64::min, f64::max].map(|pick| stops.iter().copied().reduce(pick).unwrap_or_default());
     let even = (0..ALONG).map(|i| low + (high - low) * (i as f64 / (ALONG - 1) as f64));
@@ -77,15 +77,15 @@ fn along(stops: &[f64], value: impl Fn(f64) -> f64 + Sync) -> Vec<(f64, f64)> {
     k1.dedup();
     let at = |k1: &f64| (*k1, value(*k1));
     let mut points: Vec<(f64, f64)> = k1.par_iter().map(at).collect();
-    let mut left = MORE;
-    while left > 0 {
+    let mut remaining = MORE;
+    while remaining > 0 {
         let mut jumps: Vec<(f64, f64)> = points.windows(2).filter_map(jump).collect();
         jumps.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.total_cmp(&b.1)));
-        jumps.truncate(left);
+        jumps.truncate(remaining);
         if jumps.is_empty() {
             break;
         }
-        left -= jumps.len();
+        remaining -= jumps.len();
         let between: Vec<f64> = jumps.into_iter().map(|(_, middle)| middle).collect();
         points.extend(between.par_iter().map(at).collect::<Vec<_>>());
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -93,14 +93,14 @@ fn along(stops: &[f64], value: impl Fn(f64) -> f64 + Sync) -> Vec<(f64, f64)> {
     points
 }
 
-/// How large a jump between neighbours is, as a share, and its middle; none where they are near in value or in k1.
+/// The relative size of a jump between neighbours, and the middle of the interval; none where they are close in value or in k1.
 fn jump(pair: &[(f64, f64)]) -> Option<(f64, f64)> {
     let [(from, one), (to, other)] = [pair[0], pair[1]];
     let share = one.max(other) / one.min(other) - 1.0;
     (share > JUMP && to - from > NARROW * to).then_some((share, 0.5 * (from + to)))
 }
 
-/// A row for each point of each curve; what has no value is an empty field.
+/// A row for each point of each curve; missing values are empty fields.
 pub fn table(dampers: &[Tuned], curves: &[Curve]) -> Table {
     let mut table = columns::table(&["damper", "tuning", "band", "k1", "E1max"]);
     for Curve { damper, tuning, band, points } in curves {

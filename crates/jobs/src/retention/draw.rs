@@ -19,12 +19,12 @@ const DAMPERS: [(Colour, Shape); 4] =
 const NONE: Stroke = Stroke::new(BLACK, 0.9, Dash::Short);
 const HALF: Stroke = Stroke::new(GREY, 0.9, Dash::Dots);
 const ANEW: Mark = Mark::new(Shape::Disc, BLUE, 4.0);
-/// A re-tuned design that is above the nominal one.
+/// A re-tuned design with a larger E1max than the nominal one.
 const ABOVE: Mark = Mark::new(Shape::Ring, VERMILION, 7.0);
-/// How far above it lies.
+/// Relative difference above which it is marked so.
 const MORE: f64 = 1e-3;
 
-/// The line of a design that is kept.
+/// The line of a kept design.
 const fn line(tuning: Tuning) -> Stroke {
     match tuning {
         Tuning::Paper | Tuning::Study => Stroke::new(PURPLE, 1.1, Dash::DashDot),
@@ -33,7 +33,7 @@ const fn line(tuning: Tuning) -> Stroke {
     }
 }
 
-/// E1max against k1: a chart for each damper; with the band of each structure, or with that of the nominal k1.
+/// E1max against k1, a chart for each damper; with the band of each structure, or with that of the nominal k1.
 pub(super) fn retention(retained: &Retained, band: usize) -> Drawing {
     let curves = || retained.curves.iter().filter(move |curve| curve.band == band);
     let values = curves().flat_map(|curve| curve.points.iter().map(|(_, value)| *value));
@@ -65,12 +65,12 @@ pub(super) fn retention(retained: &Retained, band: usize) -> Drawing {
         Chart { title: damper.name.clone(), ..chart }
     };
     let charts: Vec<Chart> = retained.shown().iter().map(&mut chart).collect();
-    let own = |key, words: &str| (band == OWN).then(|| (key, words.to_owned()));
+    let in_own_band = |key, words: &str| (band == OWN).then(|| (key, words.to_owned()));
     let mut legend = vec![(Key::Line(NONE), "no damper".to_owned())];
-    legend.extend(own(Key::Line(HALF), "half of the reduction, in dB, of the best TMD for each k1"));
+    legend.extend(in_own_band(Key::Line(HALF), "half of the reduction, in dB, of the best TMD for each k1"));
     let kept = Tuning::KEPT.into_iter().filter(|tuning| curves().any(|curve| curve.tuning == *tuning));
     legend.extend(kept.map(|tuning| (Key::Line(line(tuning)), tuning.name().to_owned())));
-    legend.extend(own(Key::Mark(ANEW), "re-tuned for each k1"));
+    legend.extend(in_own_band(Key::Mark(ANEW), "re-tuned for each k1"));
     let mut caption = Vec::new();
     if !above.is_empty() {
         legend.push((Key::Mark(ABOVE), "re-tuned above nominal".to_owned()));
@@ -89,7 +89,7 @@ pub(super) fn retention(retained: &Retained, band: usize) -> Drawing {
     figure(Sheet { description, width, columns, legend, caption, ..sheet }, retained.study())
 }
 
-/// Where tuning anew gives more than the nominal design keeps, as only a bound that follows k1 can make it: k1 and E1max of the re-tuned one.
+/// The k1 and E1max of re-tuned designs that are worse than the nominal one, which only a bound in proportion to k1 can cause.
 fn above_nominal(damper: &Tuned) -> Vec<(f64, f64)> {
     let Some(nominal) = damper.of(Tuning::Nominal) else { return Vec::new() };
     let energies = |&(k1, at): &(f64, Design)| (k1, damper.energy(&at, k1), damper.energy(&nominal, k1));
@@ -97,7 +97,7 @@ fn above_nominal(damper: &Tuned) -> Vec<(f64, f64)> {
     all.filter(|(_, anew, kept)| *anew > (1.0 + MORE) * kept).map(|(k1, anew, _)| (k1, anew)).collect()
 }
 
-/// k2, c2, D, C and what else is varied of the re-tuned designs against k1.
+/// k2, c2, D, C and other varied parameters of the re-tuned designs against k1.
 pub(super) fn path(retained: &Retained) -> Drawing {
     let shown = retained.shown();
     let dampers = || shown.iter().map(|&number| (number, &retained.dampers[number]));
@@ -109,7 +109,7 @@ pub(super) fn path(retained: &Retained) -> Drawing {
         let mut layers = Vec::new();
         for (number, damper) in dampers() {
             let (stroke, mark) = style(number);
-            // Designs may exchange the roles of D and C from one k1 to the next: a line between would show what is not there.
+            // The roles of D and C may be exchanged from one k1 to the next, so a line between them would mislead.
             if !variable.is_gap() {
                 layers.push(Layer::line(points(damper), stroke));
             }
@@ -162,11 +162,12 @@ pub(super) fn range(retained: &Retained) -> Drawing {
     let shapes = [Shape::Cross, Shape::Cross, Shape::Triangle, Shape::Frame];
     for (tuning, shape) in Tuning::KEPT.into_iter().zip(shapes) {
         let mark = |colour| Mark { rim: true, ..Mark::new(shape, colour, 7.0) };
-        let own = || kept.iter().filter(|point| point.tuning == tuning && point.range().is_some());
-        legend.extend(own().next().map(|_| (Key::Mark(mark(BLACK)), tuning.name().to_owned())));
+        let points_of_tuning =
+            || kept.iter().filter(|point| point.tuning == tuning && point.range().is_some());
+        legend.extend(points_of_tuning().next().map(|_| (Key::Mark(mark(BLACK)), tuning.name().to_owned())));
         let colour = |point: &Point| style(point.damper).1.colour;
         let marks = |point: &&Point| Layer::Marks { points: vec![at(point)], mark: mark(colour(point)) };
-        layers.extend(own().map(marks));
+        layers.extend(points_of_tuning().map(marks));
     }
     legend.extend(last);
     let all = || points.iter().chain(&kept).filter(|point| point.range().is_some());
@@ -222,7 +223,7 @@ fn style(damper: usize) -> (Stroke, Mark) {
     (Stroke::solid(colour), Mark::new(shape, colour, 4.0))
 }
 
-/// An axis of some stiffnesses, a little wider, so that marks at its ends are whole.
+/// An axis slightly wider than the stiffnesses, so that marks at its ends are not cut off.
 fn along_k1(k1: impl Iterator<Item = f64> + Clone) -> Axis {
     let (low, high) = (k1.clone().fold(f64::INFINITY, f64::min), k1.fold(0.0, f64::max));
     let ends = if low < high {

@@ -1,5 +1,5 @@
-//! What a smaller force does to a tuning: E1max of the nominal designs, as a share of that without a damper. A linear damper keeps its share;
-//! one with gaps is tuned for a force, unless they are in proportion to it.
+//! The effect of a smaller force on a tuning: E1max of the nominal designs, as a share of that without a damper. A linear damper keeps its
+//! share; one with gaps is tuned for one force, unless its gaps are in proportion to it.
 
 use super::tuned::{Tuned, Tuning, bare, energy};
 use crate::columns;
@@ -9,28 +9,28 @@ use retune_report::cells;
 use retune_report::table::{Column, Table};
 use retune_study::{Setting, Study};
 
-/// Forces below that of the study, each the fourth root of a half of the one before: down to an eighth.
+/// Number of forces below that of the study, in steps of a factor of 2^(-1/4): down to an eighth.
 const STEPS: i32 = 12;
-/// The steps that halve it.
+/// Number of steps that halve it.
 pub const HALF: usize = 4;
-/// The names of gaps in the table: those of the design, and in proportion to the force.
+/// The names in the table of gaps kept as designed, and of gaps in proportion to the force.
 pub const GAPS: [&str; 2] = ["kept", "in proportion"];
-/// Shares that differ by less do not depend on the force.
+/// Relative difference of shares below which they count as independent of the force.
 const SAME: f64 = 1e-3;
 
 /// E1max of a design under smaller and smaller forces.
 #[derive(Debug)]
 pub struct Forced {
-    /// The number of its damper, whose nominal design it is.
+    /// The index of the damper whose nominal design it is.
     pub damper: usize,
     /// Whether D and C are in proportion to the force.
     pub proportional: bool,
-    /// The amplitude of what drives the structure, SI unit, E1max and that without a damper, J, that of the study first.
+    /// The amplitude of the forcing, SI unit, and E1max with and without the damper, J; that of the study first.
     pub points: Vec<(f64, [f64; 2])>,
 }
 
 impl Forced {
-    /// E1max as a share of that without a damper, after so many steps.
+    /// E1max as a share of that without a damper, after `step` steps.
     pub fn share(&self, step: usize) -> f64 {
         self.points.get(step).map_or(f64::NAN, |(_, [with, without])| with / without)
     }
@@ -41,21 +41,21 @@ impl Forced {
     }
 }
 
-/// The parameter that says how strongly the structure is driven; none of what is given in time.
+/// The parameter of the forcing amplitude; none for a forcing given in time.
 pub fn amplitude(study: &Study) -> Option<Parameter> {
     study.scene.forcing.amplitude().map(|(parameter, _)| parameter)
 }
 
-/// All nominal designs, and those whose share changes with gaps in proportion to the force, too.
+/// The nominal designs under smaller forces; those whose share changes also with gaps in proportion to the force.
 pub fn forced(dampers: &[Tuned]) -> Vec<Forced> {
     let mut all = Vec::new();
     for (number, damper) in dampers.iter().enumerate() {
         let (at, study) = (damper.of(Tuning::Nominal), damper.study());
-        let own = amplitude(study).and_then(|amplitude| study.value_of(amplitude));
-        let Some((at, own)) = at.zip(own) else { continue };
+        let nominal = amplitude(study).and_then(|amplitude| study.value_of(amplitude));
+        let Some((at, nominal)) = at.zip(nominal) else { continue };
         let series = |gaps: &str| {
             let one = |step: i32| {
-                let force = own * 2_f64.powf(-0.25 * f64::from(step));
+                let force = nominal * 2_f64.powf(-0.25 * f64::from(step));
                 (force, under(study, damper.samples, &at, gaps, force).unwrap_or([f64::NAN; 2]))
             };
             let proportional = gaps == GAPS[1];
@@ -79,8 +79,8 @@ pub fn under(study: &Study, samples: Option<usize>, at: &Design, gaps: &str, for
     };
     let at = Design::new(|variable| share(variable) * at.get(variable)).ok()?;
     let study = study.with(&[Setting::new(amplitude, force)]).ok()?;
-    let own = study.scene.primary.stiffness.get();
-    Some([energy(&study, samples, &at, own)?, bare(&study, own)?])
+    let k1 = study.scene.primary.stiffness.get();
+    Some([energy(&study, samples, &at, k1)?, bare(&study, k1)?])
 }
 
 pub fn table(dampers: &[Tuned], all: &[Forced]) -> Table {

@@ -1,5 +1,5 @@
-//! The page of `retention`. It begins with its answer, as the screen does: who keeps its work, at equal performance at home, under the same bound
-//! on k2, and under a smaller force. Every number is one of the tables beside the page.
+//! The page of `retention`. It begins with the answer, as on screen: which damper stays effective, at equal performance at the nominal k1,
+//! under the same bound on k2, and under a smaller force. Every number comes from the tables beside the page.
 
 use super::curves::{Curve, cliffs};
 use super::draw;
@@ -62,7 +62,7 @@ const RULE: &str = "A damper does its work at a stiffness k1 if its reduction, 1
     which it does. The range is looked for in steps of 2 % from 0.2 to 5 times the nominal k1; where it reaches so far its end is marked with >. It is \
     counted by the factor by which k1 may rise and fall, the smaller of its two sides.";
 
-/// What is to be added where the dampers do not all have one mass.
+/// Added where the mass is varied.
 const MASS: &str = " Where m2 is varied, this TMD has the mass of the damper in the study.";
 
 fn compared(Retained { dampers, bounds, .. }: &Retained) -> String {
@@ -81,7 +81,7 @@ fn compared(Retained { dampers, bounds, .. }: &Retained) -> String {
     )
 }
 
-/// The answer: what the title asks first, then a line for each damper.
+/// The answer: the comparisons of all dampers first, then a line for each damper.
 pub(super) fn answer(retained: &Retained) -> Vec<String> {
     let shown = retained.shown();
     let first = [home(retained, &shown), robust(retained, &shown), smaller_force(retained, &shown)];
@@ -98,12 +98,11 @@ pub(super) fn answer(retained: &Retained) -> Vec<String> {
     words
 }
 
-/// The retention ranges at equal performance at home: that of the nominal design which has the most E1max there among those that do their
-/// work.
+/// The retention ranges at equal performance at the nominal k1: at most the largest E1max there of the nominal designs that have a range.
 fn home(retained: &Retained, shown: &[usize]) -> Option<String> {
     let nominal = |damper: &usize| {
-        let is_it = |point: &&Point| point.damper == *damper && point.tuning == Tuning::Nominal;
-        retained.kept.iter().find(is_it).filter(|point| point.range().is_some())
+        let is_nominal = |point: &&Point| point.damper == *damper && point.tuning == Tuning::Nominal;
+        retained.kept.iter().find(is_nominal).filter(|point| point.range().is_some())
     };
     let home = shown.iter().filter_map(nominal).map(|point| point.e1_max).reduce(f64::max)?;
     let widest = |damper: &usize| {
@@ -144,7 +143,7 @@ fn keeps(retained: &Retained, point: &Point) -> String {
     )
 }
 
-/// The k1-robust designs, those under one bound on k2 side by side.
+/// The k1-robust designs, grouped by their bound on k2.
 fn robust(retained: &Retained, shown: &[usize]) -> Option<String> {
     let worst = |damper: &usize| {
         let (of, name) = (&retained.dampers[*damper], Tuning::Robust.name());
@@ -170,7 +169,7 @@ fn robust(retained: &Retained, shown: &[usize]) -> Option<String> {
     })
 }
 
-/// What halving the force does to the nominal designs.
+/// The effect of halving the force on the nominal designs.
 fn smaller_force(retained: &Retained, shown: &[usize]) -> Option<String> {
     let name = |of: &Forced| retained.name(of.damper);
     let unit = retained.study().and_then(amplitude).map_or("", Parameter::unit);
@@ -181,7 +180,7 @@ fn smaller_force(retained: &Retained, shown: &[usize]) -> Option<String> {
         let halves = (0..3).map(|half| {
             let step = half * HALF;
             let force = of.points.get(step).map_or(f64::NAN, |(force, _)| *force);
-            // Without the rounding of powers of two.
+            // Removes the rounding errors of the powers of two.
             format!("{} at {} {unit}", rounded(of.share(step), 3), short((force * 1e6).round() / 1e6))
         });
         let gaps = if of.proportional { " with D and C in proportion to the force" } else { "" };
@@ -193,14 +192,14 @@ fn smaller_force(retained: &Retained, shown: &[usize]) -> Option<String> {
         .then(|| format!("Of E1max without a damper the nominal designs leave at the nominal k1: {words}."))
 }
 
-/// A damper along k1.
+/// The results of a damper along k1, in words.
 fn one(retained: &Retained, number: usize) -> String {
     let damper = &retained.dampers[number];
     let nominal = damper.nominal();
     let worst = |tuning: Tuning| {
-        let is_it =
+        let matches =
             |curve: &&Curve| curve.damper == Some(number) && curve.tuning == tuning && curve.band == OWN;
-        retained.curves.iter().find(is_it).and_then(Curve::worst)
+        retained.curves.iter().find(matches).and_then(Curve::worst)
     };
     let mut words = format!("{}: ", damper.name);
     let tuned = format!("tuned for k1 = {} N/m it has", short(nominal));
@@ -220,7 +219,7 @@ fn joule(value: f64) -> String {
     if value.is_finite() { rounded(value, 4) } else { "-".to_owned() }
 }
 
-/// The values at the stiffnesses that were tuned for.
+/// The values at the stiffnesses tuned for.
 fn worst(retained: &Retained) -> Block {
     let mut rows = Vec::new();
     for number in retained.shown() {
@@ -257,7 +256,7 @@ fn jumps(retained: &Retained) -> Block {
     if lines.is_empty() { Block::words("No cliffs.") } else { Block::List(lines) }
 }
 
-/// The ranges of each design that is kept.
+/// The ranges of the kept designs.
 fn ranges(retained: &Retained) -> Block {
     let cells = |range: Option<Range>| match range {
         None => ["none", "", ""].map(str::to_owned),
@@ -284,7 +283,7 @@ fn ranges(retained: &Retained) -> Block {
     Block::table(caption, head, rows)
 }
 
-/// The shares of the nominal designs under forces that halve.
+/// The shares of the nominal designs under successively halved forces.
 fn forces(retained: &Retained) -> Block {
     let shown = retained.shown();
     let row = |of: &Forced| {
@@ -311,7 +310,7 @@ fn traded(retained: &Retained, damper: usize) -> String {
     let (Some(least), Some(widest)) = (front.first(), front.last()) else {
         return format!("{name}: no design that was found does half of the work even at the nominal k1.");
     };
-    let said = |point: &Point| {
+    let design_text = |point: &Point| {
         let ends = point.range().map_or(String::new(), |range| {
             format!("{} to {} N/m", rounded(range.from, 4), rounded(range.to, 4))
         });
@@ -322,7 +321,7 @@ fn traded(retained: &Retained, damper: usize) -> String {
             design_words(&point.at, 4)
         )
     };
-    format!("{name}: from {}, to {}.", said(least), said(widest))
+    format!("{name}: from {}, to {}.", design_text(least), design_text(widest))
 }
 
 fn designs(retained: &Retained) -> Block {

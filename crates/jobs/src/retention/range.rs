@@ -1,8 +1,9 @@
-//! The retention range: the stiffnesses k1 about the nominal one at which a design still does half of what tuning anew would do.
+//! The retention range: the stiffnesses k1 around the nominal one at which a design still achieves half of the reduction that re-tuning
+//! would.
 //!
-//! The reduction of a damper is counted in decibels, `10 lg(E1max without / E1max with)`, each the worst over the structure's own band. A
-//! design does its work at a k1 if its reduction is at least half of that of the best TMD for that k1, with the mass of the damper in the
-//! study, k2 and c2 free. That is `E1max <= √(E1max without · E1max of that TMD)`. `docs/decisions.md` says why.
+//! The reduction of a damper is in decibels, `10 lg(E1max without / E1max with)`, each the worst over the structure's own band. A design is
+//! effective at a k1 if its reduction is at least half of that of the best TMD for that k1, with the mass of the study's damper and k2 and
+//! c2 free: `E1max <= √(E1max without · E1max of that TMD)`. `docs/decisions.md` gives the reason.
 
 use crate::Error;
 use rayon::prelude::*;
@@ -15,27 +16,27 @@ use retune_solver::{Settings, Window};
 use retune_study::{Rule, Setting, Study};
 use std::ops::ControlFlow;
 
-/// Stiffnesses are looked at outwards in steps of this ratio.
+/// Ratio of the steps of k1 outwards.
 const STEP: f64 = 1.02;
-/// Number of steps to either side: a range ends there at the latest, at 0.2 and at 5 times the nominal stiffness.
+/// Number of steps to either side; a range ends there at the latest, at 0.2 and 5 times the nominal stiffness.
 const STEPS: usize = 81;
 
-/// The share by which the end of a search from a valley must be better than that from Den Hartog's tuning.
+/// Relative improvement by which the search from a valley must beat the one from Den Hartog's tuning.
 const GAIN: f64 = 1e-6;
 
-/// How closely a range is looked for.
+/// The resolution with which a range is determined.
 #[derive(Clone, Copy, Debug)]
-pub struct Care {
-    /// Steps of 2 % that are taken at once.
+pub struct Resolution {
+    /// Number of steps of 2 % taken at once.
     pub stride: usize,
     /// Bisections of the step in which a range ends.
     pub bisections: u32,
 }
 
-impl Care {
-    /// For a result: its ends are within 2e-5.
+impl Resolution {
+    /// For results: ends to within 2e-5.
     pub const RESULT: Self = Self { stride: 1, bisections: 10 };
-    /// For a search: its ends are within 1e-3.
+    /// For searches: ends to within 1e-3.
     pub const SEARCH: Self = Self { stride: 2, bisections: 5 };
 }
 
@@ -48,37 +49,37 @@ pub struct Range {
     pub from: f64,
     /// Its upper end, N/m.
     pub to: f64,
-    /// Whether each end is where the search ended rather than the range.
+    /// Whether each end is only the limit of the search, not of the range.
     pub open: [bool; 2],
 }
 
 impl Range {
-    /// The factor by which the stiffness may rise and fall: half and double the stiffness detune a damper by as much, and a range that
-    /// reaches far to one side alone is of no use.
+    /// The factor by which the stiffness may rise and fall, the smaller of both sides: half and double the stiffness detune a damper
+    /// equally, and a range that is wide on one side only is useless.
     pub fn factor(&self) -> f64 {
         (self.to / self.nominal).min(self.nominal / self.from)
     }
 }
 
-/// The least reduction that counts, along k1.
+/// The largest E1max at which a damper is effective, along k1.
 #[derive(Debug)]
 pub struct Threshold {
     nominal: f64,
-    /// The logarithm of the largest E1max (J), at steps of k1 from below to above the nominal one.
+    /// The logarithms of the largest effective E1max (J) at steps of k1, ascending.
     most: Vec<f64>,
 }
 
 impl Threshold {
-    /// For the structure, the mass of the damper and the band of a study.
+    /// The threshold for the structure, the damper mass and the band of a study.
     pub fn of(study: &Study) -> Result<Self, Error> {
         let nominal = study.scene.primary.stiffness.get();
         let steps = (-(STEPS as i32)..=STEPS as i32).into_par_iter();
-        let at = |step: i32| Ok(limit(study, nominal * STEP.powi(step))?.ln());
+        let at = |step: i32| Ok(largest_effective(study, nominal * STEP.powi(step))?.ln());
         Ok(Self { nominal, most: steps.map(at).collect::<Result<_, Error>>()? })
     }
 
-    /// The largest E1max at a stiffness (N/m) that counts as half of the work, J: exact at the steps, between them by interpolation of
-    /// logarithms, with an error below 1e-4 of it.
+    /// The largest effective E1max at a stiffness (N/m), J: exact at the steps, interpolated in logarithms between them with a relative
+    /// error below 1e-4.
     pub fn at(&self, k1: f64) -> f64 {
         let place = (k1 / self.nominal).ln() / STEP.ln() + STEPS as f64;
         let place = place.clamp(0.0, (self.most.len() - 1) as f64);
@@ -87,27 +88,27 @@ impl Threshold {
         (self.most[below] * (1.0 - share) + self.most[below + 1] * share).exp()
     }
 
-    /// The range of a design: outwards from the nominal stiffness as far as E1max, J, `energy(k1, cutoff)` is at most the threshold; it
-    /// may be any larger number once it is above the cutoff. None where it is not even at the nominal stiffness. A gap that is narrower
+    /// The range of a design: from the nominal stiffness outwards as far as `energy(k1, cutoff)`, E1max in J, is at most the threshold;
+    /// above the cutoff it may return any larger number. None if the design is not effective even at the nominal stiffness. Gaps narrower
     /// than a step can be missed.
-    pub fn range(&self, care: Care, energy: impl Fn(f64, f64) -> f64 + Sync) -> Option<Range> {
-        let works = |k1: f64| {
+    pub fn range(&self, resolution: Resolution, energy: impl Fn(f64, f64) -> f64 + Sync) -> Option<Range> {
+        let is_effective = |k1: f64| {
             let most = self.at(k1);
             energy(k1, most) <= most
         };
-        if !works(self.nominal) {
+        if !is_effective(self.nominal) {
             return None;
         }
         let end = |ratio: f64| {
             let mut good = self.nominal;
-            for step in (1..=STEPS).step_by(care.stride) {
-                let step = (step + care.stride - 1).min(STEPS) as i32;
+            for step in (1..=STEPS).step_by(resolution.stride) {
+                let step = (step + resolution.stride - 1).min(STEPS) as i32;
                 let next = self.nominal * ratio.powi(step);
-                if !works(next) {
+                if !is_effective(next) {
                     let mut bad = next;
-                    for _ in 0..care.bisections {
+                    for _ in 0..resolution.bisections {
                         let middle = (good * bad).sqrt();
-                        if works(middle) { good = middle } else { bad = middle }
+                        if is_effective(middle) { good = middle } else { bad = middle }
                     }
                     return (good, false);
                 }
@@ -120,8 +121,8 @@ impl Threshold {
     }
 }
 
-/// The largest E1max that counts as half of the work at a stiffness, J.
-fn limit(study: &Study, k1: f64) -> Result<f64, Error> {
+/// The largest effective E1max at a stiffness, J.
+fn largest_effective(study: &Study, k1: f64) -> Result<f64, Error> {
     let scene = study.scene_with(&[Setting::new(Parameter::K1, k1)])?;
     let no_damper = || Error::Rule { name: study.name().to_owned(), rule: Rule::NoDamper };
     let damper = scene.damper.ok_or_else(no_damper)?;
@@ -132,8 +133,9 @@ fn limit(study: &Study, k1: f64) -> Result<f64, Error> {
     Ok((none * best_tmd(&scene, damper, band)?.1).sqrt())
 }
 
-/// The TMD with the mass of a damper, k2 and c2 free, that has the least steady E1max over a band (rad/s), and this, J. A search begins at Den
-/// Hartog's tuning, and one in the deepest [valley](DesignObjective::valleys) of a grid: off its resonance a structure has its best TMD where it is driven.
+/// The TMD with the mass of `damper` whose k2 and c2 minimise the steady E1max over a band (rad/s), and this E1max, J. One search starts at
+/// Den Hartog's tuning, one in the deepest [valley](DesignObjective::valleys) of a grid, since off resonance the best TMD is tuned to the
+/// forcing.
 pub fn best_tmd(scene: &Scene, damper: Damper, band: [f64; 2]) -> Result<(Damper, f64), Error> {
     let [from, to] = band.map(Positive::new);
     let omega = Some(FrequencyBand { from: from?, to: to?, samples: 2, relative: false });
@@ -191,16 +193,16 @@ mod tests {
     #[test]
     fn exact_the_range_of_a_parabola() {
         let energy = |k1: f64, _cutoff: f64| 100.0 * (1.0 + 25.0 * (k1 / 4e4 - 1.0).powi(2));
-        let range = threshold(200.0).range(Care::RESULT, energy).expect("a range");
+        let range = threshold(200.0).range(Resolution::RESULT, energy).expect("a range");
         let near = |a: f64, b: f64| (a / b - 1.0).abs() < 3e-5;
         assert!(near(range.from, 3.2e4) && near(range.to, 4.8e4) && range.open == [false; 2], "{range:?}");
         assert!(near(range.factor(), 1.2), "{range:?}");
         assert_eq!(
-            threshold(99.0).range(Care::RESULT, energy),
+            threshold(99.0).range(Resolution::RESULT, energy),
             None,
             "it does not work at the nominal stiffness"
         );
-        let all = threshold(1e9).range(Care::RESULT, energy).expect("a range");
+        let all = threshold(1e9).range(Resolution::RESULT, energy).expect("a range");
         assert!(all.open == [true; 2] && all.to > 4.9 * 4e4, "{all:?}");
     }
 

@@ -1,4 +1,4 @@
-//! The results of `retention`, and which of them its page shows.
+//! The results of `retention`, and the selection shown on its page.
 
 use super::curves::Curve;
 use super::force::Forced;
@@ -8,21 +8,21 @@ use crate::designs::Designs;
 use retune_model::Parameter;
 use retune_study::{SpringBounds, Study};
 
-/// Dampers are one if E1max of all their tunings differs by no more than this share.
+/// Dampers count as equal if E1max of all their tunings differs by at most this share.
 pub(super) const EQUAL: f64 = 1e-3;
 
-/// Dampers tuned for several stiffnesses of the structure, and how long each tuning lasts.
+/// Dampers tuned for several stiffnesses of the structure, and the retention of each tuning.
 #[derive(Debug)]
 pub struct Retained {
     /// Each damper with its designs.
     pub dampers: Vec<Tuned>,
-    /// What became of the bounds on k2 where a damper was tuned anew.
+    /// How the bounds on k2 depend on k1 in re-tuning.
     pub bounds: SpringBounds,
     /// E1max along k1.
     pub curves: Vec<Curve>,
     /// E1max of the nominal designs under smaller forces.
     pub forced: Vec<Forced>,
-    /// The designs that are kept, with their ranges.
+    /// The kept designs, with their ranges.
     pub kept: Vec<Point>,
     /// The designs between the nominal ones and those with the widest ranges.
     pub points: Vec<Point>,
@@ -35,7 +35,7 @@ impl Retained {
         &self.dampers[damper].name
     }
 
-    /// The study of the first damper, which figures name.
+    /// The study of the first damper, named in figures.
     pub(super) fn study(&self) -> Option<&Study> {
         self.dampers.first().map(Tuned::study)
     }
@@ -49,7 +49,7 @@ impl Retained {
         front(&self.points, damper)
     }
 
-    /// The dampers whose tunings all end where those of a later one do, with it.
+    /// Pairs of dampers with equal E1max for all tunings, the later one second.
     pub(super) fn same(&self) -> Vec<(usize, usize)> {
         let energies = |damper: usize| -> Vec<f64> {
             let rows = self.table.rows.iter().filter(|row| row.damper == self.name(damper));
@@ -66,13 +66,13 @@ impl Retained {
         (0..count).filter_map(|damper| Some((damper, later(damper)?))).collect()
     }
 
-    /// The dampers that are shown: all but those that are another one.
+    /// The dampers shown: all but those equal to a later one.
     pub(super) fn shown(&self) -> Vec<usize> {
         let same = self.same();
         (0..self.dampers.len()).filter(|damper| same.iter().all(|(one, _)| one != damper)).collect()
     }
 
-    /// Whether a kept design of a shown damper is shown: one that is given may stand in several studies, and is shown with the first.
+    /// Whether a kept design is shown: a given one may be in several studies and is shown with the first only.
     pub(super) fn is_new(&self, damper: usize, tuning: Tuning) -> bool {
         let at = self.dampers[damper].of(tuning);
         !Tuning::GIVEN.contains(&tuning)

@@ -1,15 +1,15 @@
-//! The trade between the least E1max at the nominal stiffness and the retention range.
+//! The trade-off between the least E1max at the nominal stiffness and the retention range.
 //!
-//! For each damper the widest range is searched for (Sobol points and CMA-ES over the box of its study, if it has one, then `fminsearch`), then, for ranges between that of
-//! the nominal design and the widest, the least E1max with at least this range (`fminsearch`, from the best design so far). The
-//! front is what no design dominates, evaluated again on the common samples, at the tolerance of the study.
+//! For each damper the widest range is searched for (Sobol points and CMA-ES over the box of its study, if it has one, then `fminsearch`),
+//! then, for ranges between that of the nominal design and the widest, the least E1max with at least this range (`fminsearch`, from the
+//! best design so far). The non-dominated designs are then evaluated on the common samples, at the tolerance of the study.
 
-use super::range::{Care, Range, Threshold};
+use super::range::{Range, Resolution, Threshold};
 use super::tuned::{OWN, STILL, Tuned, Tuning, on_samples};
 use crate::Error;
 use crate::columns;
 use crate::searches::Searches;
-use crate::tune::objective::{kept, loose};
+use crate::tune::objective::{journaled, loose};
 use retune_model::{Design, Parameter, Scene};
 use retune_optim::{DesignObjective, Evaluation, Global, explore, minimize};
 use retune_report::cells;
@@ -29,26 +29,26 @@ const WIDEST: Global = Global {
     evaluations: 100,
     seed: 1,
 };
-/// Number of ranges between that of the nominal design and the widest.
+/// Number of target ranges from that of the nominal design to the widest.
 const BETWEEN: u32 = 6;
-/// Evaluations of the search under each.
+/// Most evaluations of each of these searches.
 const EVALUATIONS: u64 = 60;
-/// Relative tolerances of these searches: of E1max at the nominal stiffness, and of those that are only compared with the threshold, as ends
-/// of ranges are looked for within 1e-3 alone ([`Care::SEARCH`]).
+/// Relative tolerances of these searches: for E1max at the nominal stiffness, and for values only compared with the threshold, since ends
+/// of ranges are needed only to 1e-3 ([`Resolution::SEARCH`]).
 const RTOL: f64 = 1e-6;
-const OF_RANGES: f64 = 1e-4;
-/// About the most designs of a front that are evaluated again.
+const RANGE_RTOL: f64 = 1e-4;
+/// Approximate largest number of designs of a front that are evaluated on the common samples.
 const MOST: usize = 32;
-/// A value above every E1max, J: of a design with too small a range.
+/// A value above every E1max, J, for designs with too small a range.
 const TOO_NARROW: f64 = 1e6;
 
-/// The columns of the ends of ranges: with the band of the study, and with one that stays.
+/// The columns of the ends of ranges: with the band of the study, and with a fixed one.
 pub(super) const ENDS: [&str; 4] = ["from", "to", "still_from", "still_to"];
 
-/// A design with both measures, on the common samples.
+/// A design with E1max and ranges, on the common samples.
 #[derive(Clone, Debug)]
 pub struct Point {
-    /// The number of its damper.
+    /// The index of its damper.
     pub damper: usize,
     /// How it was tuned.
     pub tuning: Tuning,
@@ -56,7 +56,7 @@ pub struct Point {
     pub at: Design,
     /// E1max at the nominal stiffness, J.
     pub e1_max: f64,
-    /// Its retention range with each band; none with one that its study does not have.
+    /// Its retention range with each band; none where it has none or its study lacks the band.
     pub ranges: [Option<Range>; 2],
 }
 
@@ -68,12 +68,12 @@ impl Point {
             let study = on_samples(tuned.studies.get(band)?, tuned.samples, &at)?;
             let (goal, settings) = (study.goal(), study.solver.settings());
             let evaluate = |scene: &Scene, cutoff| goal.evaluate(scene, &settings, cutoff);
-            range(&study, tuned.thresholds.get(band)?, Care::RESULT, evaluate)
+            range(&study, tuned.thresholds.get(band)?, Resolution::RESULT, evaluate)
         };
         Self { damper, tuning, at, e1_max, ranges: [OWN, STILL].map(range) }
     }
 
-    /// Its retention range.
+    /// Its retention range with the band of the study.
     pub fn range(&self) -> Option<Range> {
         self.ranges[OWN]
     }
@@ -90,7 +90,7 @@ impl Point {
         self.range().map_or(1.0, |range| range.factor())
     }
 
-    /// Whether it is of the same damper, as good as `other` in both measures and better in one of them.
+    /// Whether it is of the same damper, no worse than `other` in E1max and range, and better in one of them.
     pub fn dominates(&self, other: &Self) -> bool {
         let (e1_max, factor) = (self.e1_max, self.factor());
         self.damper == other.damper
@@ -109,29 +109,38 @@ pub fn front(points: &[Point], damper: usize) -> Vec<&Point> {
     front
 }
 
-/// The range of the damper in the scene of a study, by what it has in the scene at another k1.
+/// The range of the damper in a study's scene, by evaluations of the scene at other k1.
 fn range<E>(
     study: &Study,
     threshold: &Threshold,
-    care: Care,
+    resolution: Resolution,
     evaluate: impl Fn(&Scene, f64) -> Result<Evaluation, E> + Sync,
 ) -> Option<Range> {
-    threshold.range(care, |k1, cutoff| {
+    threshold.range(resolution, |k1, cutoff| {
         let scene = study.scene_with(&[Setting::new(Parameter::K1, k1)]).ok();
         let found = scene.and_then(|scene| evaluate(&scene, cutoff).ok());
         found.map_or(f64::INFINITY, |found| found.value)
     })
 }
 
-/// The designs between the nominal one and that with the widest range, of one damper.
+/// The designs of a damper between the nominal one and the one with the widest range.
 pub fn trade(number: usize, tuned: &Tuned, searches: &Searches) -> Result<Vec<Point>, Error> {
     let (study, threshold) = (tuned.study(), &tuned.thresholds[OWN]);
     let search = study.search().map_err(Error::rule(study))?;
-    let [of, of_ranges] = [RTOL, OF_RANGES].map(|rtol| loose(study, &search, &search.variables, rtol));
+    let [objective, range_objective] =
+        [RTOL, RANGE_RTOL].map(|rtol| loose(study, &search, &search.variables, rtol));
     let stages = ["E1max", "range"].map(|what| format!("{number} {what}"));
     let all = Mutex::default();
-    let evaluated = Evaluated { study, of: &of, of_ranges: &of_ranges, threshold, searches, stages, all };
-    // The designs that are kept come first, those within the bounds of the search.
+    let evaluated = Evaluated {
+        study,
+        objective: &objective,
+        range_objective: &range_objective,
+        threshold,
+        searches,
+        stages,
+        all,
+    };
+    // The kept designs within the bounds of the search come first.
     let mut least = 0.0;
     for (tuning, at) in &tuned.kept {
         let x: Vec<f64> = search.variables.iter().map(|variable| at.get(*variable)).collect();
@@ -142,20 +151,20 @@ pub fn trade(number: usize, tuned: &Tuned, searches: &Searches) -> Result<Vec<Po
             }
         }
     }
-    // Without a range, the nearer to one the better.
+    // Without a range, a design closer to the threshold scores better.
     let score = |(e1_max, width): (f64, f64)| {
         if width > 0.0 { -width } else { e1_max / threshold.at(tuned.nominal()) }
     };
     let widest = |x: &[f64]| score(evaluated.evaluate(x));
     if let Some((_, space, _)) = &search.global {
         let found = explore(|x, _| widest(x), space, &WIDEST, || ());
-        found.map_err(|source| Error::Global { source, failures: of.failures() })?;
+        found.map_err(|source| Error::Global { source, failures: objective.failures() })?;
     }
     let options = || retune_optim::Options { max_fun_evals: Some(EVALUATIONS), ..search.options.clone() };
     let refine = |value: &dyn Fn(&[f64], f64) -> f64, from: Option<(Vec<f64>, _)>| -> Result<(), Error> {
         let Some((from, _)) = from else { return Ok(()) };
         let found = minimize(value, &from, options(), |_| ControlFlow::Continue(()));
-        found.map_err(|source| Error::Search { source, failures: of.failures() })?;
+        found.map_err(|source| Error::Search { source, failures: objective.failures() })?;
         Ok(searches.journal().check()?)
     };
     refine(&|x, _| widest(x), evaluated.best(score))?;
@@ -176,11 +185,11 @@ pub fn trade(number: usize, tuned: &Tuned, searches: &Searches) -> Result<Vec<Po
     Ok(designs.into_iter().map(|at| Point::new((number, tuned), Tuning::Front, at)).collect())
 }
 
-/// The designs of a damper that were evaluated: E1max at the nominal stiffness, J, and the factor of its range less 1.
+/// The evaluated designs of a damper: E1max at the nominal stiffness, J, and the factor of the range minus 1.
 struct Evaluated<'a> {
     study: &'a Study,
-    of: &'a DesignObjective,
-    of_ranges: &'a DesignObjective,
+    objective: &'a DesignObjective,
+    range_objective: &'a DesignObjective,
     threshold: &'a Threshold,
     searches: &'a Searches<'a>,
     stages: [String; 2],
@@ -188,11 +197,11 @@ struct Evaluated<'a> {
 }
 
 impl Evaluated<'_> {
-    /// Evaluates a design; both numbers are kept in the journal.
+    /// Evaluates a design; the journal keeps both numbers.
     fn evaluate(&self, x: &[f64]) -> (f64, f64) {
         let journal = self.searches.journal();
         let [first, second] = &self.stages;
-        let e1_max = kept(self.of, journal, first, || ())(x, f64::INFINITY);
+        let e1_max = journaled(self.objective, journal, first, || ())(x, f64::INFINITY);
         let nominal = self.study.scene.primary.stiffness.get();
         let width = match e1_max <= self.threshold.at(nominal) {
             true => journal.value(second, x, f64::INFINITY, || self.width(x), |_| ()),
@@ -204,14 +213,14 @@ impl Evaluated<'_> {
     }
 
     fn width(&self, x: &[f64]) -> f64 {
-        let Ok(scene) = self.of.scene(x) else { return 0.0 };
+        let Ok(scene) = self.objective.scene(x) else { return 0.0 };
         let study = Study { scene, ..self.study.clone() };
-        let evaluate = |scene: &Scene, cutoff| self.of_ranges.evaluate(scene, cutoff);
-        let range = range(&study, self.threshold, Care::SEARCH, evaluate);
+        let evaluate = |scene: &Scene, cutoff| self.range_objective.evaluate(scene, cutoff);
+        let range = range(&study, self.threshold, Resolution::SEARCH, evaluate);
         range.map_or(0.0, |range| range.factor() - 1.0)
     }
 
-    /// All designs with both numbers; the order does not depend on which thread was first.
+    /// All designs with both numbers, in an order that does not depend on the threads.
     fn all(&self) -> Vec<(Vec<f64>, (f64, f64))> {
         let all = self.all.lock().unwrap_or_else(PoisonError::into_inner);
         let design = |key: &Vec<u64>| key.iter().map(|bits| f64::from_bits(*bits)).collect();
@@ -224,7 +233,7 @@ impl Evaluated<'_> {
         finite.min_by(|a, b| value(a.1).total_cmp(&value(b.1)))
     }
 
-    /// The designs that no other dominates, about [`MOST`] of them at most, evenly along the front.
+    /// The non-dominated designs, at most about [`MOST`], evenly along the front.
     fn front(&self, varied: &[Parameter]) -> Result<Vec<Design>, Error> {
         let mut all = self.all();
         all.retain(|(_, (_, width))| *width > 0.0);
@@ -240,7 +249,7 @@ impl Evaluated<'_> {
         for (number, (x, (_, width))) in all.into_iter().enumerate() {
             if width >= next || number == last {
                 next = width + step;
-                front.push(Design::of_varied(&self.of.damper(&x)?, varied));
+                front.push(Design::of_varied(&self.objective.damper(&x)?, varied));
             }
         }
         Ok(front)

@@ -2,7 +2,7 @@
 
 use super::range::Threshold;
 use crate::Error;
-use crate::tune::objective::finer;
+use crate::tune::objective::with_samples;
 use retune_model::{Design, NonNegative, Positive, Scene};
 use retune_optim::Stiffnesses;
 use retune_study::Study;
@@ -12,29 +12,29 @@ pub(super) const CURVES: &str = "retention.csv";
 pub(super) const RANGES: &str = "range.csv";
 pub(super) const FORCES: &str = "force.csv";
 
-/// How a damper came to its design.
+/// How a design was tuned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tuning {
-    /// There is no damper.
+    /// No damper.
     None,
-    /// That of the paper, kept whatever k1 becomes.
+    /// The paper's design, kept for all k1.
     Paper,
-    /// Another that is given, kept as well.
+    /// Another given design, kept for all k1.
     Study,
-    /// Tuned for the k1 of its study, and kept.
+    /// Tuned for the k1 of its study, and kept for all k1.
     Nominal,
-    /// Tuned for the worst over all k1, and kept.
+    /// Tuned for the worst over all k1, and kept for all k1.
     Robust,
-    /// Tuned anew at each k1.
+    /// Re-tuned at each k1.
     Anew,
-    /// Between the nominal design and that with the widest range.
+    /// Between the nominal design and the one with the widest range.
     Front,
 }
 
 impl Tuning {
-    /// Those whose design is kept.
+    /// The tunings whose design is kept.
     pub const KEPT: [Self; 4] = [Self::Paper, Self::Study, Self::Nominal, Self::Robust];
-    /// Those that no search found.
+    /// The tunings that no search found.
     pub const GIVEN: [Self; 2] = [Self::Paper, Self::Study];
 
     /// Its name in tables and figures.
@@ -51,9 +51,9 @@ impl Tuning {
     }
 }
 
-/// The names of bands in tables: that of the study, and one that stays where it is at the nominal k1.
+/// The names of bands in tables: the study's band, and the band fixed where it is at the nominal k1.
 pub(super) const BANDS: [&str; 2] = ["own", "still"];
-/// Their numbers.
+/// Their indices.
 pub(super) const OWN: usize = 0;
 pub(super) const STILL: usize = 1;
 
@@ -62,9 +62,9 @@ pub(super) const STILL: usize = 1;
 pub struct Tuned {
     /// Its name.
     pub name: String,
-    /// Its study, the damper in whose scene is the one that is given; then the same with a band that stays, if that of the study moves with k1.
+    /// Its study, with the given damper in the scene; then the study with a fixed band, if the study's band moves with k1.
     pub studies: Vec<Study>,
-    /// For each of them what counts as half of the work.
+    /// The threshold for each of the studies.
     pub thresholds: Vec<Threshold>,
     /// The samples of the band on which all designs are compared.
     pub samples: Option<usize>,
@@ -75,14 +75,14 @@ pub struct Tuned {
 }
 
 impl Tuned {
-    /// Without designs and thresholds.
+    /// A damper without designs and thresholds.
     pub(super) fn new(name: String, study: Study, samples: Option<usize>) -> Self {
         let studies = [Some(study.clone()), still(&study)].into_iter().flatten().collect();
         Self { name, studies, thresholds: Vec::new(), samples, kept: Vec::new(), anew: Vec::new() }
     }
 
-    /// The same with its thresholds.
-    pub(super) fn judged(self) -> Result<Self, Error> {
+    /// The damper with its thresholds.
+    pub(super) fn with_thresholds(self) -> Result<Self, Error> {
         Ok(Self { thresholds: self.studies.iter().map(Threshold::of).collect::<Result<_, _>>()?, ..self })
     }
 
@@ -96,7 +96,7 @@ impl Tuned {
         self.study().scene.primary.stiffness.get()
     }
 
-    /// The kept design of a tuning, if it has one.
+    /// The kept design of a tuning, if there is one.
     pub fn of(&self, tuning: Tuning) -> Option<Design> {
         self.kept.iter().find(|(kept, _)| *kept == tuning).map(|(_, at)| *at)
     }
@@ -106,21 +106,21 @@ impl Tuned {
         energy(self.study(), self.samples, at, k1).unwrap_or(f64::NAN)
     }
 
-    /// E1max of a design for what it was tuned for, J: the worst over all `k1` (N/m), that at its own, the paper's at the nominal one. None
-    /// where it cannot be run.
+    /// E1max of a design under the conditions it was tuned for, J: the worst over all `k1` (N/m), that at the k1 of a re-tuned design, else
+    /// at the nominal one. None where it cannot be run.
     pub fn energy_as_tuned(&self, tuning: &str, at: &Design, k1: &[f64]) -> Option<f64> {
-        let own = k1.iter().copied().find(|k1| label(*k1) == tuning).unwrap_or(self.nominal());
+        let tuned_for = k1.iter().copied().find(|k1| label(*k1) == tuning).unwrap_or(self.nominal());
         let robust = (tuning == Tuning::Robust.name()).then(|| over(self.study(), k1));
-        energy(robust.as_ref().unwrap_or(self.study()), self.samples, at, own)
+        energy(robust.as_ref().unwrap_or(self.study()), self.samples, at, tuned_for)
     }
 }
 
-/// The label of a design that is tuned for a stiffness, N/m.
+/// The label of a design tuned for a stiffness, N/m.
 pub fn label(k1: f64) -> String {
     format!("k1 = {k1}")
 }
 
-/// A study with its band where the natural frequency of its own structure puts it; none if it does not move with k1.
+/// The study with its band fixed at the nominal k1; none if the band does not move with k1.
 fn still(study: &Study) -> Option<Study> {
     let mut study = study.clone();
     let (primary, mut moves) = (study.scene.primary, false);
@@ -137,13 +137,14 @@ fn still(study: &Study) -> Option<Study> {
     moves.then_some(study)
 }
 
-/// E1max by the objective of a study for a design at a stiffness (N/m), J, on so many samples; none where it cannot be run.
+/// E1max of a design by a study's objective at a stiffness (N/m), J, on `samples` frequencies, by default the study's; none where it cannot
+/// be run.
 pub fn energy(study: &Study, samples: Option<usize>, at: &Design, k1: f64) -> Option<f64> {
     let study = on_samples(study, samples, at)?;
     study.energy(&scene_at(&study, k1)?)
 }
 
-/// A study for the worst over some stiffnesses, N/m.
+/// The study with the worst over some stiffnesses, N/m, as objective.
 pub fn over(study: &Study, k1: &[f64]) -> Study {
     let mut study = study.clone();
     let all: Vec<Positive> = k1.iter().filter_map(|k1| Positive::new(*k1).ok()).collect();
@@ -158,10 +159,10 @@ pub fn bare(study: &Study, k1: f64) -> Option<f64> {
     study.energy(&Scene { damper: None, ..scene_at(study, k1)? })
 }
 
-/// A study with a design in its scene, its band on so many samples, or on its own.
+/// The study with a design in its scene and its band on `samples` frequencies, by default its own.
 pub fn on_samples(study: &Study, samples: Option<usize>, at: &Design) -> Option<Study> {
     match samples {
-        Some(samples) => finer(study, samples, at),
+        Some(samples) => with_samples(study, samples, at),
         None => Some(Study { scene: study.scene_at(at)?, ..study.clone() }),
     }
 }

@@ -1,4 +1,4 @@
-//! A sweep as a figure: a chart for each quantity, one below the other, with a damper and without.
+//! The figure of a sweep: stacked charts, one for each quantity, with and without a damper.
 
 use crate::pages::abscissa;
 use crate::rows::Rows;
@@ -12,7 +12,7 @@ use retune_study::rounded;
 /// The lines: with a damper, and without.
 const WITH: Stroke = Stroke::new(VERMILION, 1.3, Dash::Solid);
 const NONE: Stroke = Stroke::new(BLACK, 1.1, Dash::Short);
-/// Fewer values than this are marked one by one.
+/// With fewer values than this, each is marked.
 const FEW: usize = 40;
 
 pub fn draw(sweep: &Sweep, table: &Table) -> String {

@@ -1,4 +1,4 @@
-//! What is swept.
+//! The plan of a sweep.
 
 use crate::Error;
 use retune_model::{Measure, Parameter};
@@ -9,7 +9,7 @@ use std::str::FromStr;
 /// Most values of a sweep.
 pub const MOST_POINTS: usize = 100_000;
 
-/// What is asked for, as it is typed.
+/// The options as typed.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// The parameter that is swept.
@@ -24,13 +24,13 @@ pub struct Options {
     pub points: usize,
     /// Whether the values have equal ratios instead of equal differences.
     pub log: bool,
-    /// What is shown; E1max if empty.
+    /// The quantities shown; E1max if empty.
     pub quantities: Vec<Quantity>,
     /// Whether each point is the objective of the study instead of one run.
     pub objective: bool,
 }
 
-/// What is swept. With a study it is the complete input of a sweep.
+/// The plan of a sweep. With a study it is the complete input.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     /// The parameter that is swept.
@@ -43,14 +43,14 @@ pub struct Plan {
     pub points: usize,
     /// Whether the values have equal differences or equal ratios.
     pub scale: Scale,
-    /// What is shown on screen and in the figure; tables hold everything.
+    /// The quantities shown on screen and in the figure; tables hold all.
     pub quantities: Vec<Quantity>,
     /// Whether each point is the objective of the study instead of one run.
     pub objective: bool,
 }
 
 impl Options {
-    /// A sweep of 61 evenly spaced values, the ends of which are still to be given.
+    /// A sweep of 61 evenly spaced values; the ends must still be given.
     pub fn over(over: Parameter) -> Self {
         let [from, to] = [String::new(), String::new()];
         Self { over, from, to, unit: None, points: 61, log: false, quantities: Vec::new(), objective: false }
@@ -58,14 +58,14 @@ impl Options {
 }
 
 impl Plan {
-    /// Reads what is asked for.
+    /// Reads the plan from options.
     ///
     /// # Errors
     /// An end is no number, or there are no such values.
     pub fn read(options: &Options) -> Result<Self, Error> {
         let Options { over, points, objective, .. } = *options;
         let end = |option, text: &str| {
-            // A number that has no unit of its own has that of all.
+            // A number without a unit takes the common one.
             let unit =
                 options.unit.as_deref().filter(|_| text.trim().parse::<f64>().is_ok()).unwrap_or_default();
             over.read(&format!("{text}{unit}")).map_err(|problem| Error::Argument { option, problem })
@@ -84,7 +84,7 @@ impl Plan {
         Ok(Self { over, from, to, points, scale, quantities, objective })
     }
 
-    /// The options of the command line that ask for it.
+    /// The command-line options for the plan.
     pub fn options(&self) -> String {
         let Self { over, from, to, points, scale, quantities, objective } = self;
         let log = if *scale == Scale::Log { " --log" } else { "" };
@@ -118,7 +118,7 @@ impl Plan {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Quantity {
-    /// A largest value of the motion in the window, or the [decay time](retune_solver::decay_time), which no harmonic motion has.
+    /// A largest value of the motion in the window, or the [decay time](retune_solver::decay_time), for transient forcings only.
     Of(Measure),
     /// The transmissibility, see [`retune_model::Forcing::transmissibility`].
     Transmissibility,

@@ -10,7 +10,7 @@ use retune_report::table::{Cell, Column, Table};
 use retune_solver::{SolverError, decay_time, simulate};
 use retune_study::{Rule, Setting, Study, hertz_and_rpm};
 
-/// What is swept, with the study that it is swept in.
+/// A plan with its study.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     plan: Plan,
@@ -42,13 +42,13 @@ const OF_DAMPER: usize = Measure::OF_DAMPER.len() + 2;
 const OBJECTIVE: usize = 4;
 
 impl Sweep {
-    /// A plan for a study, checked.
+    /// Checks a plan for a study.
     ///
     /// # Errors
     /// The scene cannot have one of the values, or the objective does not depend on the parameter.
     pub fn new(plan: Plan, study: Study) -> Result<Self, Error> {
         let axis = plan.axis()?;
-        // What a parameter may be is a range: the ends tell of all values between.
+        // The allowed values of a parameter form an interval, so checking both ends suffices.
         for end in [plan.from, plan.to] {
             study.scene_with(&[Setting::new(plan.over, end)])?;
         }
@@ -57,13 +57,13 @@ impl Sweep {
                 return Err(Error::rule(&study)(Rule::NoOptimize));
             }
             let objective = study.objective();
-            let own = |term: &Objective| match plan.over {
+            let takes_its_own = |term: &Objective| match plan.over {
                 Parameter::Omega => term.omega.is_some(),
                 Parameter::K1 => term.k1.is_some(),
                 Parameter::Restitution => term.restitution.is_some(),
                 _ => false,
             };
-            if objective.terms().iter().all(|(_, term)| own(term)) {
+            if objective.terms().iter().all(|(_, term)| takes_its_own(term)) {
                 let over = plan.over;
                 let problem = format!(
                     "{over}: the objective takes its own values of {over}, so that it does not change with that of the scene: \
@@ -75,12 +75,12 @@ impl Sweep {
         Ok(Self { plan, study, axis })
     }
 
-    /// What is swept.
+    /// The plan.
     pub fn plan(&self) -> &Plan {
         &self.plan
     }
 
-    /// The study that it is swept in.
+    /// The study.
     pub fn study(&self) -> &Study {
         &self.study
     }
@@ -90,7 +90,7 @@ impl Sweep {
         self.axis.value(point)
     }
 
-    /// The numbers at a value of the parameter, infinite where there is none; and then why the first of them has no value.
+    /// The numbers at a value of the parameter, infinite where missing, and if so the reason for the first.
     pub fn numbers_at(&self, value: f64) -> (Vec<f64>, Option<String>) {
         let scene = match self.study.scene_with(&[Setting::new(self.plan.over, value)]) {
             Ok(scene) => scene,
@@ -98,17 +98,17 @@ impl Sweep {
         };
         let (mut numbers, reason) =
             if self.plan.objective { self.objective(&scene) } else { self.runs(&scene) };
-        // A journal takes NaN for a number that was never computed.
+        // To a journal, NaN means a number that was never computed.
         numbers.iter_mut().filter(|number| !number.is_finite()).for_each(|number| *number = f64::INFINITY);
         (numbers, reason)
     }
 
-    /// Whether its runs have a decay time, in the place of a transmissibility.
+    /// Whether its runs have a decay time instead of a transmissibility.
     fn decays(&self) -> bool {
         self.study.scene.forcing.is_transient()
     }
 
-    /// How many numbers of a run are of the structure: its largest values, and the time of its decay if it has one.
+    /// Number of a run's numbers for the structure: its largest values, and its decay time if it has one.
     fn of_structure(&self) -> usize {
         Measure::OF_STRUCTURE.len() + usize::from(self.decays())
     }
@@ -215,7 +215,7 @@ impl Sweep {
         row
     }
 
-    /// The table of all points, from their numbers one after the other; those that are not finite are missing.
+    /// The table of all points from their consecutive numbers; numbers that are not finite are left empty.
     pub fn table(&self, numbers: &[f64]) -> Table {
         let mut table = Table::new(self.columns());
         for (i, numbers) in numbers.chunks(self.width()).enumerate() {

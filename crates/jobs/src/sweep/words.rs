@@ -1,4 +1,4 @@
-//! A sweep in words: the answer first, then some of its rows.
+//! The text of a sweep: the answer first, then some of its rows.
 
 use crate::rows::Rows;
 use crate::sweep::points::Sweep;
@@ -12,14 +12,14 @@ const WIDEST: usize = 80;
 /// Width of a column with a frequency or another parameter, and of one with a quantity.
 const NARROW: usize = 9;
 const WIDE: usize = 12;
-/// Rows of a short table, beside those with the largest and the smallest value.
+/// Rows of a short table, besides those with the largest and the smallest value.
 const FEW: usize = 12;
 /// The mark of the row with the smallest value, the longer of the two.
 const SMALLEST: &str = " < smallest";
-/// That of a row whose design breaks a limit.
+/// The mark of a row whose design breaks a limit.
 const BROKEN: &str = " over limit";
 
-/// What a sweep shows: the name of a column, in a table or figure.
+/// The names of the columns shown in the text and the figure.
 pub(crate) fn shown(sweep: &Sweep) -> Vec<String> {
     if sweep.plan().objective {
         return vec![sweep.study().quantity().name().to_owned()];
@@ -51,7 +51,7 @@ fn damper(sweep: &Sweep) -> String {
     format!("damper: {}", words.join(", "))
 }
 
-/// What each point is.
+/// The meaning of each point, in words.
 pub(crate) fn each(sweep: &Sweep) -> String {
     let study = sweep.study();
     if sweep.plan().objective {
@@ -77,15 +77,15 @@ fn at(sweep: &Sweep, value: f64) -> String {
 /// The row with the largest or the smallest value of a column, and that value. `sign` is 1 or -1.
 pub(crate) fn extreme(values: &[f64], sign: f64) -> Option<(usize, f64)> {
     let known = values.iter().copied().enumerate().filter(|(_, value)| value.is_finite());
-    // Of equal ones the first.
+    // The first of equal ones.
     known.fold(None, |best: Option<(usize, f64)>, next| match best {
         Some((_, value)) if sign * value >= sign * next.1 => best,
         _ => Some(next),
     })
 }
 
-/// The answer and a table: of all rows, or of a few and those with the largest and the smallest value. `reasons` are points without a value,
-/// each with why.
+/// The answer and a table of all rows, or of a few and those with the largest and the smallest value. `reasons` are the points without a
+/// value, each with the reason.
 pub fn text(sweep: &Sweep, table: &Table, reasons: &[(f64, String)], all: bool) -> String {
     let count = counted(sweep.len() as u64, "value");
     let each = fill(&format!("{count}, {}", each(sweep)), Options::new(WIDEST).subsequent_indent("  "));
@@ -116,13 +116,13 @@ pub fn text(sweep: &Sweep, table: &Table, reasons: &[(f64, String)], all: bool) 
     let (first, alone) = (shown(sweep).into_iter().next(), shown(sweep).len() == 1);
     let end = |numbers: Option<Vec<f64>>, sign| Some(extreme(&numbers?, sign)?.0);
     let high = end(first.as_ref().and_then(|name| table.column(name)), 1.0);
-    let low = end(first.as_ref().and_then(|name| kept(table, name, &broken)), -1.0);
+    let low = end(first.as_ref().and_then(|name| feasible(table, name, &broken)), -1.0);
     for i in chosen(table.rows.len(), [high, low].into_iter().flatten(), all) {
         let cells = columns.iter().map(|(_, width, values)| format!("{:>width$}", cell(values[i])));
         let mark = match Some(i) {
             _ if broken[i] => BROKEN,
             _ if high == low && breaking == 0 => "",
-            // Of several quantities each has its own, which the answer tells.
+            // With several quantities the extremes differ; the answer reports them.
             _ if !alone => "",
             row if row == high => " < largest",
             row if row == low => SMALLEST,
@@ -133,14 +133,14 @@ pub fn text(sweep: &Sweep, table: &Table, reasons: &[(f64, String)], all: bool) 
     lines.join("\n")
 }
 
-/// Of which rows the design breaks a limit, by more than rounding.
+/// Whether the design of each row breaks a limit by more than rounding.
 fn broken(table: &Table) -> Vec<bool> {
     let violations = table.column("violation").unwrap_or_else(|| vec![0.0; table.rows.len()]);
     violations.into_iter().map(|violation| violation > Limits::ROUNDING).collect()
 }
 
-/// A column without the values of designs that break a limit; all of it where every design does.
-fn kept(table: &Table, name: &str, broken: &[bool]) -> Option<Vec<f64>> {
+/// A column with NaN for designs that break a limit; the whole column if all do.
+fn feasible(table: &Table, name: &str, broken: &[bool]) -> Option<Vec<f64>> {
     let numbers = table.column(name)?;
     if !broken.contains(&false) {
         return Some(numbers);
@@ -154,13 +154,13 @@ fn kept(table: &Table, name: &str, broken: &[bool]) -> Option<Vec<f64>> {
     )
 }
 
-/// Where a quantity is largest and smallest, and the same without a damper.
+/// The largest and smallest value of a quantity and their places, with and without a damper, in words.
 fn answer(sweep: &Sweep, table: &Table, (values, broken): (&[f64], &[bool]), name: &str) -> Vec<String> {
     let unit = table.unit(name);
-    let said = |column: &str| -> Option<[String; 2]> {
+    let extremes = |column: &str| -> Option<[String; 2]> {
         let numbers = table.column(column)?;
         let (high, lowest) = (extreme(&numbers, 1.0)?, extreme(&numbers, -1.0)?);
-        let low = extreme(&kept(table, column, broken)?, -1.0)?;
+        let low = extreme(&feasible(table, column, broken)?, -1.0)?;
         let words = |(row, value): (usize, f64)| {
             let space = if unit.is_empty() { "" } else { " " };
             format!("{} {unit}{space}at {}", rounded(value, 4), at(sweep, values[row]))
@@ -169,7 +169,7 @@ fn answer(sweep: &Sweep, table: &Table, (values, broken): (&[f64], &[bool]), nam
         let always = format!("{} {unit} at every value", rounded(high.1, 4));
         Some(if same { [always, String::new()] } else { [words(high), words(low)] })
     };
-    let Some([high, low]) = said(name) else { return vec![format!("{name} has no value anywhere")] };
+    let Some([high, low]) = extremes(name) else { return vec![format!("{name} has no value anywhere")] };
     let mut lines = vec![format!("{name}: largest {high}")];
     if low.is_empty() {
         lines = vec![format!("{name}: {high}")];
@@ -177,14 +177,14 @@ fn answer(sweep: &Sweep, table: &Table, (values, broken): (&[f64], &[bool]), nam
         let some_keep = broken.contains(&true) && broken.contains(&false);
         lines.push(format!("  smallest {}{low}", if some_keep { "that keeps the limits " } else { "" }));
     }
-    if let Some([high, low]) = said(&format!("{name}_none")) {
+    if let Some([high, low]) = extremes(&format!("{name}_none")) {
         let largest = if low.is_empty() { "" } else { "largest " };
         lines.push(format!("  without a damper {largest}{high}"));
     }
     lines
 }
 
-/// The columns that have room on a line: the heading, the width and the values of each.
+/// The columns that fit on a line, each with heading, width and values.
 fn columns(sweep: &Sweep, table: &Table) -> Vec<([String; 2], usize, Vec<f64>)> {
     let of = |column: &Column, heading: &str, width| {
         let values = table.column(&column.name).unwrap_or_default();

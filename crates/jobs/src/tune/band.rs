@@ -18,16 +18,16 @@ const FINE: usize = 601;
 /// Factor on the number of the search's samples if each frequency is a run.
 const FINER: usize = 4;
 
-/// A frequency, rad/s, and there the quantity without a damper, with that of the study and with the tuned one; NaN where there is none.
+/// A frequency, rad/s, and the quantity without a damper, with the study's damper and with the tuned one; NaN where there is no value.
 pub(crate) type Rows = Vec<(f64, [f64; 3])>;
 
-/// The scenes of every comparison, in the order of `band.csv`: no damper, that of the study, the tuned one.
+/// The scenes of every comparison, in the order of `band.csv`: no damper, the study's damper, the tuned damper.
 pub(crate) fn compared(study: &Study, tuned: Scene) -> [Scene; 3] {
     [Scene { damper: None, ..tuned }, study.scene, tuned]
 }
 
-/// Writes `band.csv` and `band.svg`, and returns their rows, if the objective has a band; `tuned` is the scene with the damper that was found. Missing values (a steady motion
-/// that reaches a wall, a run that fails) are empty fields and gaps.
+/// Writes `band.csv` and `band.svg`, and returns their rows, if the objective has a band; `tuned` is the scene with the tuned damper.
+/// Missing values (a steady motion that reaches a wall, a run that fails) are empty fields and gaps.
 pub(super) fn write(study: &Study, tuned: Scene, results: &Directory) -> Result<Option<Rows>, Error> {
     let objective = study.objective();
     let Some((term, band)) = first(&objective).and_then(|term| Some((term, term.omega?.of(&tuned.primary))))
@@ -41,14 +41,15 @@ pub(super) fn write(study: &Study, tuned: Scene, results: &Directory) -> Result<
     };
     let fine = Band { samples, ..band };
     let scenes = compared(study, tuned);
-    let worst = scenes.map(|scene| energy(study, scene, term));
+    let worst = scenes.map(|scene| term_value(study, scene, term));
     let single = Objective { omega: None, ..term.clone() };
     let rows: Rows = (0..samples)
         .into_par_iter()
         .map(|i| {
             let omega = fine.at(i);
-            let energy = |scene| at(omega, scene).map_or(f64::NAN, |scene| energy(study, scene, &single));
-            (omega, scenes.map(energy))
+            let term_value =
+                |scene| at(omega, scene).map_or(f64::NAN, |scene| term_value(study, scene, &single));
+            (omega, scenes.map(term_value))
         })
         .collect();
 
@@ -73,8 +74,8 @@ pub(crate) fn at(omega: f64, mut scene: Scene) -> Option<Scene> {
     Some(scene)
 }
 
-/// The quantity of a scene as in a term, without limits; NaN if it has none.
-pub(crate) fn energy(study: &Study, scene: Scene, term: &Objective) -> f64 {
+/// The value of a term for a scene, regardless of limits; NaN if it cannot be computed.
+pub(crate) fn term_value(study: &Study, scene: Scene, term: &Objective) -> f64 {
     let goal = Goal { objective: term.clone(), ..study.window.window().into() };
     let value = goal.evaluate(&scene, &study.solver.settings(), f64::INFINITY);
     value.map_or(f64::NAN, |found| found.value)
@@ -84,16 +85,16 @@ pub(crate) fn first(objective: &Objective) -> Option<&Objective> {
     objective.terms().first().map(|(_, term)| *term)
 }
 
-/// The quantity of a scene at its own frequency, as in `band.csv`; NaN if it has none.
-pub fn at_its_own(study: &Study, scene: Scene) -> f64 {
+/// The quantity of a scene at the scene's frequency, as in `band.csv`; NaN if it has none.
+pub fn at_own_frequency(study: &Study, scene: Scene) -> f64 {
     let objective = study.objective();
     first(&objective)
-        .map_or(f64::NAN, |term| energy(study, scene, &Objective { omega: None, ..term.clone() }))
+        .map_or(f64::NAN, |term| term_value(study, scene, &Objective { omega: None, ..term.clone() }))
 }
 
-/// Whether the objective looks at frequencies that are not drawn: those of every k1 about its own natural frequency, where the figure has the
-/// band of one.
-fn reaches_beyond(term: &Objective) -> bool {
+/// Whether the objective covers frequencies that are not drawn: with several k1 and a relative band each k1 has its own band, and the
+/// figure shows only one.
+fn covers_more_than_drawn(term: &Objective) -> bool {
     term.k1.is_some() && term.omega.is_some_and(|band| band.relative)
 }
 
@@ -110,14 +111,15 @@ fn picture(study: &Study, rows: &[(f64, [f64; 3])], worst: [f64; 3]) -> String {
     ];
     let quantity = study.quantity();
     let name = quantity.name();
-    let said = |value: f64| match value.is_finite() {
+    let largest = |value: f64| match value.is_finite() {
         true => format!(": {}", measured(value, quantity)),
         false => String::new(),
     };
-    let all =
-        |of: [f64; 3]| -> Vec<String> { (0..3).map(|i| format!("{}{}", lines[i].0, said(of[i]))).collect() };
+    let all = |of: [f64; 3]| -> Vec<String> {
+        (0..3).map(|i| format!("{}{}", lines[i].0, largest(of[i]))).collect()
+    };
     let objective = study.objective();
-    let is_beyond = first(&objective).is_some_and(reaches_beyond);
+    let is_beyond = first(&objective).is_some_and(covers_more_than_drawn);
     let mut caption = vec![MadeBy::new(study).to_string()];
     if is_beyond {
         let worst = all(worst).join("; ");

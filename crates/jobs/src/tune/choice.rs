@@ -1,5 +1,5 @@
-//! The last choice among the ends of refinements: of designs that are as good, one that keeps its value where others do not: off by a
-//! little, or from other starts than rest.
+//! The final choice among the refined designs: of designs with practically equal values, the one whose value is least sensitive to small
+//! errors and to the initial state.
 
 use super::refine::{Refined, Run};
 use crate::amount::Amount;
@@ -11,10 +11,10 @@ use retune_optim::Limit;
 use retune_study::Study;
 use serde::Serialize;
 
-/// Designs whose values differ by less than this share are as good.
+/// Designs whose values differ by less than this share are equally good.
 const SAME: f64 = 0.01;
 
-/// In a valley values differ by less than this share.
+/// Designs whose values differ by less than this share lie in one valley.
 const VALLEY: f64 = 1e-3;
 
 /// A design that was passed over, though its value is smaller.
@@ -36,17 +36,17 @@ impl PassedOver {
     }
 }
 
-/// Margins of the force that differ by less than this, as multiples of it, are as good.
+/// Resolution of the margin of the force: margins are rounded to multiples of it before they are compared.
 const SAME_MARGIN: f64 = 0.01;
 
-/// The place of the choice among designs in the order of their values: the first that is robust, of these the one with the largest margin of the
-/// force; else the first of which no other motion is much worse than that from rest; else the first.
+/// The index of the chosen design, from designs sorted by value: of the robust ones the one with the largest margin of the force; else the
+/// first for which no other motion is much worse than the one from rest; else the first.
 fn place(all: &[(Option<Verdict>, f64)]) -> usize {
     let rank = |place: usize| rank(all[place].0, all[place].1);
     (0..all.len()).reduce(|best, other| if rank(other) < rank(best) { other } else { best }).unwrap_or(0)
 }
 
-/// Less is better: the verdict, and of designs that are robust the margin of the force.
+/// Sort key, smaller is better: the verdict, then for robust designs the margin of the force.
 fn rank(verdict: Option<Verdict>, safe_to: f64) -> (u8, f64) {
     match verdict {
         Some(Verdict::Robust) => (0, -(safe_to / SAME_MARGIN).round()),
@@ -55,54 +55,56 @@ fn rank(verdict: Option<Verdict>, safe_to: f64) -> (u8, f64) {
     }
 }
 
-/// The contact force, N, and the stroke, m, of a design; none where it cannot be run.
+/// The largest contact force, N, and stroke, m, of a design; none where it cannot be run.
 fn burden(study: &Study) -> Option<[f64; 2]> {
     let reached = worst(study)?.reached;
     Some([Measure::ContactForce, Measure::Stroke].map(|measure| reached.get(Limit::Of(measure))))
 }
 
-/// Whether a design needs less: a force that is smaller by more than what is the same, or as large a force and a smaller stroke.
-fn is_less(other: &[f64; 2], own: &[f64; 2]) -> bool {
-    let less = |i: usize| other[i] < (1.0 - SAME) * own[i];
-    let more = |i: usize| other[i] > (1.0 + SAME) * own[i];
+/// Whether `other` loads the damper less than `own`: a contact force smaller by more than [`SAME`], or an equal force and a smaller stroke.
+fn is_less(other: &[f64; 2], reference: &[f64; 2]) -> bool {
+    let less = |i: usize| other[i] < (1.0 - SAME) * reference[i];
+    let more = |i: usize| other[i] > (1.0 + SAME) * reference[i];
     less(0) || !more(0) && less(1)
 }
 
-/// Of ends in one valley, where values differ by nothing that matters, the place among those `seen` of the one that needs the least and is as
-/// safe as that at `chosen`; ends that were not seen are certified for it.
-fn lightest(
+/// Among designs in the valley of `certified[chosen]`, the index of the one with the least contact force, then stroke, that is at least as
+/// safe. Designs without a certificate are certified here and appended to `certified`.
+fn least_loaded(
     chosen: usize,
-    seen: &mut Vec<(usize, Certificate)>,
+    certified: &mut Vec<(usize, Certificate)>,
     as_good: &[usize],
     values: &[f64],
     of: &impl Fn(usize) -> Result<Study, Error>,
 ) -> Result<usize, Error> {
-    let (number, certificate) = &seen[chosen];
+    let (number, certificate) = &certified[chosen];
     let burden =
         |number: usize| of(number).ok().and_then(|study| burden(&study)).unwrap_or([f64::INFINITY; 2]);
-    let own = burden(*number);
-    let within = |other: &usize| values[*other] <= (1.0 + VALLEY) * values[*number];
+    let reference = burden(*number);
+    let in_valley = |other: &usize| values[*other] <= (1.0 + VALLEY) * values[*number];
     let mut lighter: Vec<(usize, [f64; 2])> =
-        as_good.iter().copied().filter(within).map(|other| (other, burden(other))).collect();
-    lighter.retain(|(_, other)| is_less(other, &own));
+        as_good.iter().copied().filter(in_valley).map(|other| (other, burden(other))).collect();
+    lighter.retain(|(_, other)| is_less(other, &reference));
     lighter.sort_by(|(_, a), (_, b)| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-    let least = rank(certificate.judged.verdict, certificate.safe_to());
+    let required = rank(certificate.judged.verdict, certificate.safe_to());
     for (number, _) in lighter {
-        let known = seen.iter().position(|(known, _)| *known == number);
+        let known = certified.iter().position(|(other, _)| *other == number);
         if known.is_none() {
-            seen.push((number, judge(&of(number)?)?));
+            certified.push((number, judge(&of(number)?)?));
         }
-        let place = known.unwrap_or(seen.len() - 1);
-        let certificate = &seen[place].1;
-        if rank(certificate.judged.verdict, certificate.safe_to()) <= least {
-            return Ok(place);
+        let index = known.unwrap_or(certified.len() - 1);
+        let certificate = &certified[index].1;
+        if rank(certificate.judged.verdict, certificate.safe_to()) <= required {
+            return Ok(index);
         }
     }
     Ok(chosen)
 }
 
-/// Chooses, of the ends of the refinements within 1 % of the best, one of the best verdict, of those that are robust the one with the largest
-/// margin of the force, of those the best, and of those within 0.1 % of it the one with the least contact force, then stroke. The certificate of the choice, and what it passes over. Ends are compared at the study's tolerance, whatever that of its search.
+/// Chooses among the refined designs within 1 % of the best value: the best verdict first; if robust, the largest margin of the force; then
+/// the smallest value. Among designs within 0.1 % of that one it takes the least contact force, then stroke. Returns the certificate of the
+/// choice and the designs with smaller values that were passed over. Values are compared at the study's tolerance, whatever that of its
+/// search.
 pub(super) fn choose(
     study: &Study,
     refined: &mut Refined,
@@ -126,7 +128,7 @@ pub(super) fn choose(
     refined.winner = order.first().copied().unwrap_or(refined.winner);
     let best = values[refined.winner];
     order.retain(|&i| i == refined.winner || values[i] <= (1.0 + SAME) * best);
-    let mut seen: Vec<(usize, Certificate)> = Vec::new();
+    let mut certified: Vec<(usize, Certificate)> = Vec::new();
     let of = |number: usize| -> Result<Study, Error> {
         let scene = refined.objective.scene(&refined.runs[number].minimum.x)?;
         Ok(Study { scene, ..study.clone() })
@@ -134,29 +136,31 @@ pub(super) fn choose(
     let as_good = order.clone();
     let bar = watch.progress("certificates", order.len() as u64);
     for number in order {
-        seen.push((number, judge(&of(number)?)?));
+        certified.push((number, judge(&of(number)?)?));
         bar.inc(1);
-        if seen.last().is_some_and(|(_, certificate)| certificate.is_safest()) {
+        if certified.last().is_some_and(|(_, certificate)| certificate.is_safest()) {
             break;
         }
     }
-    let all: Vec<(Option<Verdict>, f64)> =
-        seen.iter().map(|(_, certificate)| (certificate.judged.verdict, certificate.safe_to())).collect();
-    let chosen = lightest(place(&all), &mut seen, &as_good, &values, &of)?;
-    let taken = rank(seen[chosen].1.judged.verdict, seen[chosen].1.safe_to());
-    let smaller = |(number, _): &&(usize, Certificate)| values[*number] < values[seen[chosen].0];
-    let passed = seen.iter().filter(smaller).map(|(number, certificate)| PassedOver {
+    let all: Vec<(Option<Verdict>, f64)> = certified
+        .iter()
+        .map(|(_, certificate)| (certificate.judged.verdict, certificate.safe_to()))
+        .collect();
+    let chosen = least_loaded(place(&all), &mut certified, &as_good, &values, &of)?;
+    let chosen_rank = rank(certified[chosen].1.judged.verdict, certified[chosen].1.safe_to());
+    let smaller = |(number, _): &&(usize, Certificate)| values[*number] < values[certified[chosen].0];
+    let passed = certified.iter().filter(smaller).map(|(number, certificate)| PassedOver {
         start: number + 1,
         design: PerVariable::of(refined.objective.variables(), &refined.runs[*number].minimum.x),
         value: Amount::new(study.quantity(), retune_optim::value_of(values[*number])),
-        words: if rank(certificate.judged.verdict, certificate.safe_to()) > taken {
+        words: if rank(certificate.judged.verdict, certificate.safe_to()) > chosen_rank {
             certificate.reason().to_owned()
         } else {
             "as good, but it needs a larger contact force or stroke".to_owned()
         },
     });
     let passed = passed.collect();
-    let (number, certificate) = seen.swap_remove(chosen);
+    let (number, certificate) = certified.swap_remove(chosen);
     let design = of(number)?;
     let certificate = if certificate.is_whole() { complete(&design, certificate) } else { certify(&design)? };
     bar.finish();

@@ -1,9 +1,9 @@
-//! The finish of every search: descents by derivatives from where its refinements end, and from the best TMD; and further runs from the damper of the
-//! study and from places beside the best end, where these are lower.
+//! The last stage of every search: descents by derivatives from the refined designs and from the best TMD, then further refinements from
+//! the study's damper and from points near the best minimum, where these are lower.
 
-use super::log::worth;
+use super::log::value_words;
 use super::objective::{Task, searched};
-use super::refine::{Descended, Refined, Run, quietly};
+use super::refine::{Descended, Refined, Run, run_unreported};
 use super::tmd::{best_steady, tmd};
 use super::valley::{Measured, Valley, measure};
 use crate::Error;
@@ -13,20 +13,20 @@ use retune_store::Journal;
 use retune_study::{Search, counted};
 use std::cell::OnceCell;
 
-/// A value that is lower by less than this share is none that a descent has found.
+/// Relative decrease below which a lower value does not count as an improvement.
 const GAIN: f64 = 1e-5;
-/// The best TMD of a steady objective takes the place of an end that is above it by this share.
+/// The best TMD of a steady objective is added as a run if the best refined value is above its value by more than this share.
 const BETTER: f64 = 1e-4;
 
-/// Where a run from the design that the study gives begins.
+/// The start of a run from the study's damper.
 const DAMPER: &str = "the damper of the study";
-/// Where a run from what is found about the best end begins.
+/// The start of a run from a lower point near the best minimum.
 const BESIDE: &str = "a lower place beside the best end";
-/// Most runs from there, one after the other.
+/// Most such runs, one after the other.
 const ROUNDS: usize = 3;
 
-/// Goes down from the end of every refinement, and from the best TMD of a damper with walls: in a kink, where several peaks are equally high or a
-/// limit is reached, a simplex stops before it arrives. An end that is better takes the place of the refinement's.
+/// Descends from the end of every refinement, and from the best TMD if the damper has walls. At a kink, where several peaks are equally
+/// high or a limit is active, a simplex stops short of the minimum. A better end replaces that of the refinement.
 pub(super) fn finish(task: &Task, refined: &mut Refined) -> Result<(), Error> {
     let Task { study, search, journal, place, watch } = *task;
     let Refined { objective, runs, .. } = refined;
@@ -35,8 +35,8 @@ pub(super) fn finish(task: &Task, refined: &mut Refined) -> Result<(), Error> {
     let count = runs.len();
     let bar = watch.progress("descents", starts.len() as u64);
     let foot = |(i, start): (usize, &&[f64])| {
-        let worth_it = i == count || objective.goal().has_pieces();
-        let foot = worth_it
+        let can_improve = i == count || objective.goal().has_pieces();
+        let foot = can_improve
             .then(|| descend(objective, search, start, journal, &format!("{place}fminsearch descent")));
         bar.inc(1);
         foot
@@ -46,17 +46,17 @@ pub(super) fn finish(task: &Task, refined: &mut Refined) -> Result<(), Error> {
     journal.check()?;
     let mut feet = feet.into_iter();
     for (run, foot) in runs.iter_mut().zip(&mut feet) {
-        foot.into_iter().for_each(|foot| take(run, foot));
+        foot.into_iter().for_each(|foot| take_if_lower(run, foot));
     }
     refined.take_lowest();
     let Refined { runs, .. } = refined;
-    let mut of_tmd = tmd.zip(feet.flatten().next());
-    if of_tmd.is_none() {
-        // In closed form no search has to end above it.
+    let mut from_tmd = tmd.zip(feet.flatten().next());
+    if from_tmd.is_none() {
+        // For a steady objective the optimum is known in closed form, so no search may end above it.
         let least = runs.iter().map(|run| run.minimum.value).fold(f64::INFINITY, f64::min);
-        of_tmd = best_steady(study, search).filter(|(_, foot)| foot.end.value < (1.0 - BETTER) * least);
+        from_tmd = best_steady(study, search).filter(|(_, foot)| foot.end.value < (1.0 - BETTER) * least);
     }
-    if let Some((best, Foot { from, end: Point { x, value }, counts })) = of_tmd
+    if let Some((best, Foot { from, end: Point { x, value }, counts })) = from_tmd
         && value.is_finite()
     {
         let row = Row { iteration: 0, func_count: 1, procedure: Procedure::Start, best, value: from };
@@ -65,12 +65,12 @@ pub(super) fn finish(task: &Task, refined: &mut Refined) -> Result<(), Error> {
         let descent = Some(Descended { from, evaluations: counts.evaluations });
         refined.push("the best TMD", Run { rows: vec![row], minimum, descent });
     }
-    own(task, refined)?;
+    try_study_damper(task, refined)?;
     for (number, run) in refined.runs.iter().enumerate() {
         let Some(Descended { from, evaluations }) = run.descent else { continue };
         let begin =
             refined.beyond(number).map_or_else(|| format!("the end of start {}", number + 1), str::to_owned);
-        let [from, to] = [from, run.minimum.value].map(|value| worth(value, study.quantity()));
+        let [from, to] = [from, run.minimum.value].map(|value| value_words(value, study.quantity()));
         watch.log(&format!(
             "descent from {begin}: {from} to {to} in {}",
             counted(evaluations, "evaluation")
@@ -79,8 +79,8 @@ pub(super) fn finish(task: &Task, refined: &mut Refined) -> Result<(), Error> {
     Ok(())
 }
 
-/// Where the damper of the study is better than all ends, the search goes on from it: no answer is above what was given.
-fn own(task: &Task, refined: &mut Refined) -> Result<(), Error> {
+/// Continues the search from the study's damper if that is better than all minima found: the result is never worse than the given design.
+fn try_study_damper(task: &Task, refined: &mut Refined) -> Result<(), Error> {
     let Task { study, search, watch, .. } = *task;
     let design = search.own();
     if !design.iter().zip(&search.options.bounds).all(|(value, bounds)| bounds.contain(*value)) {
@@ -97,36 +97,38 @@ fn own(task: &Task, refined: &mut Refined) -> Result<(), Error> {
         return Ok(());
     }
     watch.log("the damper of the study is better than the ends of all starts: the search goes on from it")?;
-    go_on(task, refined, DAMPER, &design)
+    continue_from(task, refined, DAMPER, &design)
 }
 
-/// Looks about the end that is best, one parameter at a time: where it is lower, the search goes on from there. Gives the place that was looked about
-/// last, and its valleys.
-pub(super) fn lowest_of_valleys(
-    task: &Task,
-    refined: &mut Refined,
-) -> Result<(Vec<f64>, Vec<Valley>), Error> {
+/// Probes the best minimum along each parameter; where the objective is lower, the search continues from there. Returns the design that was
+/// probed last, and its valleys.
+pub(super) fn probe_valleys(task: &Task, refined: &mut Refined) -> Result<(Vec<f64>, Vec<Valley>), Error> {
     let mut rounds = 0..ROUNDS;
     loop {
         let design = refined.best().minimum.x.clone();
         let Measured { valleys, lower } = measure(task, &design);
         let Some(lower) = lower.filter(|_| rounds.next().is_some()) else { return Ok((design, valleys)) };
-        go_on(task, refined, BESIDE, &lower)?;
+        continue_from(task, refined, BESIDE, &lower)?;
         if refined.best().minimum.x == design {
             return Ok((design, valleys));
         }
     }
 }
 
-/// One more run from a design, and a descent from its end.
-fn go_on(task: &Task, refined: &mut Refined, from: &'static str, design: &[f64]) -> Result<(), Error> {
+/// Adds a refinement from a design, and a descent from its end.
+fn continue_from(
+    task: &Task,
+    refined: &mut Refined,
+    from: &'static str,
+    design: &[f64],
+) -> Result<(), Error> {
     let Task { search, journal, place, watch, .. } = *task;
     let bar = watch.progress("fminsearch", 1);
-    let mut run = quietly(task, &mut refined.objective, design)?;
+    let mut run = run_unreported(task, &mut refined.objective, design)?;
     let stage = format!("{place}fminsearch descent");
     if refined.objective.goal().has_pieces() {
         let foot = descend(&refined.objective, search, &run.minimum.x, journal, &stage);
-        take(&mut run, foot);
+        take_if_lower(&mut run, foot);
     }
     bar.inc(1);
     bar.finish();
@@ -134,8 +136,8 @@ fn go_on(task: &Task, refined: &mut Refined, from: &'static str, design: &[f64])
     Ok(())
 }
 
-/// The end of a descent takes the place of that of its run where it is lower.
-fn take(run: &mut Run, Foot { end, counts, from }: Foot) {
+/// Replaces the minimum of a run by the end of its descent, where that is lower.
+fn take_if_lower(run: &mut Run, Foot { end, counts, from }: Foot) {
     let least = if from < INFEASIBLE { (1.0 - GAIN) * run.minimum.value } else { run.minimum.value };
     if end.value < least {
         (run.minimum.x, run.minimum.value) = (end.x, end.value);
@@ -143,7 +145,7 @@ fn take(run: &mut Run, Foot { end, counts, from }: Foot) {
     }
 }
 
-/// [`DesignObjective::descend`] within the bounds of a search; the journal keeps what it comes to under the name of a stage.
+/// [`DesignObjective::descend`] within the bounds of a search; the journal keeps its result under the name of a stage.
 pub fn descend(
     objective: &DesignObjective,
     search: &Search,

@@ -1,4 +1,4 @@
-//! The ends of a search that is a part of a larger job: the designs that it comes to, without a directory, files or a certificate of its own.
+//! The designs found by a search that is part of a larger job, without a directory, files or a certificate of its own.
 
 use super::descent::finish;
 use super::global::{Basins, Explored, global};
@@ -10,19 +10,19 @@ use retune_optim::value_of;
 use retune_store::Journal;
 use retune_study::{Search, Study};
 
-/// What a search comes to.
+/// The designs that a search found.
 #[derive(Clone, Debug)]
 pub struct Ends {
-    /// The best of its refinements.
+    /// The best refined design.
     pub best: Design,
     /// Its value at the tolerance of searches, in the unit of the quantity; NaN if it breaks a limit.
     pub value: f64,
-    /// The best design of every other place that it came to, best first, the place of `best` among them.
+    /// The best design of every basin that it found, best first, that of `best` among them.
     pub places: Vec<Design>,
 }
 
-/// Makes the global search of a study and the refinements, from its own starts as well; a grid in it is ignored. The journal of the larger job
-/// keeps the values, under names that begin with `place`.
+/// Runs the global search of a study and its refinements, including those from given starts; a grid is ignored. The journal of the larger
+/// job keeps the values under names that begin with `place`.
 ///
 /// # Errors
 /// The study has nothing to tune, nothing can be computed, or the journal cannot be written.
@@ -46,8 +46,7 @@ pub fn ends(study: &Study, journal: &Journal, place: &str, watch: &dyn Observer)
     Ok(Ends { best, value, places: places.iter().filter_map(|place| whole(place, &best)).collect() })
 }
 
-/// Where refinements start: at points of a grid, at places of a global search, at designs that are given; where there are none of these at the
-/// damper of the study.
+/// The starts of refinements: points of the grid, basins of the global search, given designs; if there are none, the study's damper.
 pub(super) fn starts(search: &Search, on_grid: &[Vec<f64>], explored: Option<&Explored>) -> Vec<Vec<f64>> {
     let mut starts = on_grid.to_vec();
     starts.extend(explored.map(|explored| explored.starts(search.starts)).unwrap_or_default());

@@ -1,7 +1,7 @@
 //! The global search of a study, and the basins that it and the refinements found.
 
-use super::log::{BASINS, worth};
-use super::objective::{Task, coarse, kept, searched};
+use super::log::{BASINS, value_words};
+use super::objective::{Task, coarse, journaled, searched};
 use super::refine::{Refined, Run, columns};
 use crate::Error;
 use crate::amount::{Amount, measured};
@@ -18,17 +18,17 @@ use serde::Serialize;
 use std::time::Instant;
 
 pub struct Explored {
-    /// The searches, in the order of their starts.
+    /// The CMA-ES searches, in the order of their starts.
     pub searches: Vec<Descent>,
     pub basins: Vec<Basin>,
     pub space: Space,
-    /// The distance below which two ends are one basin.
+    /// Distance below which two minima belong to one basin.
     pub apart: f64,
     pub failures: Failures,
     pub counts: Counts,
 }
 
-/// Makes the global search of a study, if it asks for one. The journal keeps its values under names that begin with `place`.
+/// Runs the global search of a study, if it asks for one. The journal keeps its values under names that begin with `place`.
 pub(super) fn global(task: &Task) -> Result<Option<Explored>, Error> {
     let Task { study, search, journal, place, watch } = *task;
     let Some((global, space, apart)) = search.global.clone() else { return Ok(None) };
@@ -45,16 +45,16 @@ pub(super) fn global(task: &Task) -> Result<Option<Explored>, Error> {
     let most = u64::from(global.samples) + global.searches as u64 * global.evaluations;
     let bar = watch.progress("global", most);
     let stages = ["global", "ends"].map(|stage| format!("{place}{stage}"));
-    let value = kept(&objective, journal, &stages[0], || bar.known());
+    let value = journaled(&objective, journal, &stages[0], || bar.known());
     let found = explore(&value, &space, &global, || bar.inc(1));
     bar.finish();
     journal.check()?;
     let failures = objective.failures();
     let searches = found.map_err(|source| Error::Global { source, failures: failures.clone() })?;
     let exact = searched(study, search, &search.variables);
-    let value = kept(&exact, journal, &stages[1], || ());
-    let again = |point: &Point| Point { value: value(&point.x, f64::INFINITY), x: point.x.clone() };
-    let ends: Vec<Point> = searches.par_iter().map(|search| again(&search.found)).collect();
+    let value = journaled(&exact, journal, &stages[1], || ());
+    let reevaluate = |point: &Point| Point { value: value(&point.x, f64::INFINITY), x: point.x.clone() };
+    let ends: Vec<Point> = searches.par_iter().map(|search| reevaluate(&search.found)).collect();
     let basins = basins(value, &space, &ends, apart);
     let counts = objective.counts().and(exact.counts());
     let explored = Explored { searches, basins, space, apart, failures, counts };
@@ -63,7 +63,7 @@ pub(super) fn global(task: &Task) -> Result<Option<Explored>, Error> {
 }
 
 impl Explored {
-    /// The best designs of the best basins: where refinements start.
+    /// The starts of refinements: the best design of each of the best `count` basins.
     pub(super) fn starts(&self, count: usize) -> Vec<Vec<f64>> {
         self.basins.iter().take(count).map(|basin| basin.best.x.clone()).collect()
     }
@@ -74,7 +74,7 @@ impl Explored {
         let at: Vec<String> = at.map(|(variable, value)| format!("{variable} = {}", short(*value))).collect();
         let evaluations = counted(self.counts.evaluations, "evaluation");
         let searches = counted(self.searches.len() as u64, "search");
-        let (places, best) = (counted(self.basins.len() as u64, "place"), worth(best.value, quantity));
+        let (places, best) = (counted(self.basins.len() as u64, "place"), value_words(best.value, quantity));
         let at = at.join(", ");
         format!(
             "global: {seconds:.1} s, {evaluations}; {searches} came to {places}; the best has {best} at {at}"
@@ -88,7 +88,7 @@ pub struct Basins {
     /// Designs evaluated as samples and by the searches.
     pub(crate) evaluations: u64,
     pub(crate) searches: usize,
-    /// Number of them that ended in the basin of the optimum.
+    /// Number of searches that ended in the basin of the optimum.
     pub(crate) reached_optimum: usize,
     /// Best first.
     pub(crate) basins: Vec<BasinNote>,
@@ -107,14 +107,14 @@ pub(crate) struct BasinNote {
 }
 
 impl Basins {
-    /// Groups the ends of searches and refinements: the end of a search whose basin was refined is the end of that
-    /// refinement. In `runs` the refinements of basins follow `skip` others, in the order of the basins.
+    /// Groups the minima of searches and refinements; where a basin was refined, the refined minimum replaces that of the search. In the
+    /// runs the refinements of basins follow `skip` others, in the order of the basins.
     pub(super) fn new(task: &Task, explored: &Explored, refined: &Refined, skip: usize) -> Self {
         let Task { study, search, journal, place, .. } = *task;
         let quantity = study.quantity();
         let runs = &refined.runs;
         let stage = format!("{place}basins");
-        let value = kept(&refined.objective, journal, &stage, || ());
+        let value = journaled(&refined.objective, journal, &stage, || ());
         let end = |run: &Run| Point { x: run.minimum.x.clone(), value: run.minimum.value };
         let count = explored.basins.len().min(search.starts);
         let mut points: Vec<Point> = explored.basins.iter().map(|basin| basin.best.clone()).collect();

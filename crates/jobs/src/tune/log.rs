@@ -37,7 +37,7 @@ pub fn screen(row: &Row, values: &[f64]) -> String {
 }
 
 /// A value of the objective in words.
-pub fn worth(value: f64, quantity: Measure) -> String {
+pub fn value_words(value: f64, quantity: Measure) -> String {
     let value = value_of(value);
     if value.is_nan() { "no feasible design".to_owned() } else { measured(value, quantity) }
 }
@@ -66,14 +66,14 @@ pub const OPTIMUM: &str = "optimum.json";
 pub const GRID: &str = "surf.csv";
 /// A row for each iteration of the refinement that was chosen.
 pub const LOG: &str = "fminsearch.csv";
-/// The same of all refinements.
+/// A row for each iteration of every refinement.
 pub const STARTS: &str = "fminsearch-starts.csv";
 /// A row for each basin of a global search.
 pub const BASINS: &str = "basins.csv";
-/// A row for each frequency: without a damper, with that of the study, with the tuned one.
+/// A row for each frequency: without a damper, with the study's damper, with the tuned one.
 pub const BAND: &str = "band.csv";
 
-/// Those that only a search leaves.
+/// The files that only a search writes.
 pub const SEARCHED: [&str; 5] = [GRID, LOG, STARTS, BASINS, BAND];
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Shares of the grid, for many machines: one computed by `optimize --shard 3/64`, all merged by `merge`.
+//! Shares of the grid for many machines: `optimize --shard 3/64` computes one, `merge` joins all.
 
 use super::surf::Designs;
 use super::{Optimum, run, searched, tuned};
@@ -10,7 +10,7 @@ use retune_store::Order;
 use retune_study::{Rule, Study};
 use std::path::{Path, PathBuf};
 
-/// The grid of a study, of which shares are made in `out`.
+/// The grid of a study, whose shares are written to `out`.
 fn shared<'a>(
     study: &Study,
     rows: &'a Designs,

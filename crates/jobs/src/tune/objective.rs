@@ -7,7 +7,7 @@ use retune_solver::Settings;
 use retune_store::Journal;
 use retune_study::{Search, Study};
 
-/// A search, with the journal that keeps its values under names that begin with `place`, and who hears of it.
+/// A search, with the journal that keeps its values under names that begin with `place`, and its observer.
 #[derive(Clone, Copy)]
 pub(crate) struct Task<'a> {
     pub study: &'a Study,
@@ -17,8 +17,8 @@ pub(crate) struct Task<'a> {
     pub watch: &'a dyn Observer,
 }
 
-/// An objective as searches call it: values in the journal are not computed again; `on_known` is called for each of them.
-pub fn kept<'a>(
+/// An objective as searches call it: values in the journal are reused, and `on_known` is called for each of them.
+pub fn journaled<'a>(
     objective: &'a DesignObjective,
     journal: &'a Journal,
     stage: &'a str,
@@ -38,23 +38,23 @@ pub fn objective(study: &Study, search: &Search, variables: &[Parameter]) -> Des
     with(study, search, variables, study.goal(), study.solver.settings())
 }
 
-/// The same at the tolerance of searches.
+/// The objective at the tolerance of searches.
 pub fn searched(study: &Study, search: &Search, variables: &[Parameter]) -> DesignObjective {
     with(study, search, variables, study.goal(), study.solver.searching()).following()
 }
 
-/// The same at a relative tolerance, or at that of searches where it is looser.
+/// The objective at the relative tolerance `rtol`, or at that of searches where that is looser.
 pub fn loose(study: &Study, search: &Search, variables: &[Parameter], rtol: f64) -> DesignObjective {
-    let own = study.solver.searching();
-    let settings = Settings { rtol: own.rtol.max(rtol), ..own };
+    let searching = study.solver.searching();
+    let settings = Settings { rtol: searching.rtol.max(rtol), ..searching };
     with(study, search, variables, study.goal(), settings).following()
 }
 
-/// The same as exact as the study wants its grid: at the tolerance of `optimize.coarse`, and on samples alone if it says so.
+/// The objective as the grid uses it: at the tolerance of `optimize.coarse`, and without the peaks between samples if it says so.
 pub(crate) fn coarse(study: &Study, search: &Search, variables: &[Parameter]) -> DesignObjective {
-    let (said, own) = (study.coarse(), study.solver.searching());
-    let settings = Settings { rtol: said.rtol.unwrap_or(own.rtol), ..own };
-    with(study, search, variables, Goal { peaks: said.peaks, ..study.goal() }, settings).following()
+    let (grid, searching) = (study.coarse(), study.solver.searching());
+    let settings = Settings { rtol: grid.rtol.unwrap_or(searching.rtol), ..searching };
+    with(study, search, variables, Goal { peaks: grid.peaks, ..study.goal() }, settings).following()
 }
 
 fn with(
@@ -67,8 +67,8 @@ fn with(
     DesignObjective::new(study.scene, search.damper, variables.to_vec(), goal, settings)
 }
 
-/// A study with a design in its scene, its band on so many samples; none where there is no such scene.
-pub(crate) fn finer(study: &Study, samples: usize, at: &Design) -> Option<Study> {
+/// A study with a design in its scene and its band on `samples` frequencies; none where the design is not valid.
+pub(crate) fn with_samples(study: &Study, samples: usize, at: &Design) -> Option<Study> {
     let mut study = study.clone();
     study.scene = study.scene_at(at)?;
     if let Some(band) = study.optimize.as_mut().and_then(|optimize| optimize.objective.omega.as_mut()) {
@@ -77,9 +77,9 @@ pub(crate) fn finer(study: &Study, samples: usize, at: &Design) -> Option<Study>
     Some(study)
 }
 
-/// The worst of the scene of a study over its band; none where it cannot be run.
+/// The worst case of a study's scene over its band; none where it cannot be run.
 pub(crate) fn worst(study: &Study) -> Option<Evaluation> {
-    // Limits that every run breaks: they have the largest stroke and force searched for, peaks between samples included.
+    // Limits that every run breaks, so that the largest stroke and force are evaluated, peaks between samples included.
     let mut goal = study.goal();
     let least = Positive::new(f64::MIN_POSITIVE).ok()?;
     let none = Limits::default().since(goal.limits.from);

@@ -32,13 +32,13 @@ pub struct Optimum {
     /// The meaning of that value, if it is not E1max in a window at the scene's omega.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) objective: Option<Goal>,
-    /// The same without a damper; null if it has no bound.
+    /// The value without a damper; null if it is unbounded.
     #[serde(flatten)]
     none: Amount,
     /// The damper of the study's scene in words.
     #[serde(skip)]
     baseline: &'static str,
-    /// The same with the damper of the study's scene; null if it cannot be run.
+    /// The value with the damper of the study's scene; null if it cannot be run.
     #[serde(flatten)]
     study: Amount,
     pub(crate) on_bound: Vec<Met>,
@@ -55,23 +55,23 @@ pub struct Optimum {
     /// Number of refinements that begin at the starts.
     #[serde(skip)]
     starts: usize,
-    /// Where that which found it began, if not at one of the starts.
+    /// The start of the winning run, if not one of the starts.
     #[serde(skip)]
     beyond: Option<&'static str>,
     pub(crate) failures: FailureNote,
-    /// Designs with smaller values that other motions make much worse, if one without was as good.
+    /// Designs with smaller values that were passed over for a safer or less loaded one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) passed_over: Vec<PassedOver>,
-    /// How far each parameter may go, the others held, until the value is 0.1 % larger.
+    /// The range of each parameter, the others held, within which the value is at most 0.1 % larger.
     #[serde(rename = "within_0.1_percent")]
     valleys: Vec<Valley>,
     /// `certificate.json`, here in its short form.
     #[serde(serialize_with = "in_short")]
     pub(crate) certificate: Certificate,
-    /// The largest values over all that the answer covers, each at its own place.
+    /// The largest values over everything that the objective covers, each at its own worst case.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) needs: Option<Needs>,
-    /// The study with the tuned damper, for words.
+    /// The study with the tuned damper, for texts.
     #[serde(skip)]
     of: Study,
     simulation: Summary,
@@ -117,7 +117,7 @@ pub(crate) struct FailureNote {
 }
 
 impl Optimum {
-    /// The tuned parameters of every place that a global search came to, best first.
+    /// The tuned parameters of every basin found by the global search, best first.
     pub fn places(&self) -> Vec<PerVariable<f64>> {
         self.global.iter().flat_map(Basins::places).collect()
     }
@@ -177,7 +177,7 @@ impl Optimum {
         })
     }
 
-    /// Its value by the objective of its study, in the unit of the quantity.
+    /// The value of the study's objective, in the unit of the quantity.
     pub fn value(&self) -> f64 {
         self.value.value
     }
@@ -220,7 +220,7 @@ pub fn table2_row(name: &str, damper: &TunedDamper) -> String {
 }
 
 impl FailureNote {
-    /// Of all stages, in their order.
+    /// Collects the failures of all stages; the example is the first.
     fn new(stages: &[Option<&Failures>]) -> Self {
         let count = stages.iter().flatten().map(|failures| failures.count).sum();
         let first = stages.iter().flatten().find_map(|failures| failures.example.as_deref());
@@ -255,7 +255,7 @@ pub(super) struct RunNote {
     pub(super) iterations: u64,
     pub(super) func_count: u64,
     pub(super) stop: Stop,
-    /// The descent by derivatives that went on from there, where it found a better design.
+    /// The descent by derivatives from the end of the refinement, where it found a better design.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) descent: Option<DescentNote>,
 }

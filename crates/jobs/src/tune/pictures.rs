@@ -1,6 +1,6 @@
 //! The figures of a search: Figure 2's surfaces, and the convergence of the refinement.
 
-use super::log::worth;
+use super::log::value_words;
 use super::refine::Refined;
 use super::surf::Surf;
 use crate::summary::MadeBy;
@@ -58,13 +58,16 @@ fn heat_map(surf: &Surf, [x, y]: [usize; 2], search: &Search, refined: &Refined,
             format!("Least {} over the grid in {}{}.", quantity.name(), others.join(" and "), study.coarse())
         }
     };
-    let above = |most| format!(" Grey: none below {}.", worth(most, quantity));
+    let above = |most| format!(" Grey: none below {}.", value_words(most, quantity));
     let what = what + &study.coarse().most.map_or_else(String::new, above);
     let places = [
-        Place { at: (best[x], best[y]), label: format!("best of the grid, {}", worth(surf.least, quantity)) },
+        Place {
+            at: (best[x], best[y]),
+            label: format!("best of the grid, {}", value_words(surf.least, quantity)),
+        },
         Place {
             at: (found(x), found(y)),
-            label: format!("refined, {}", worth(refined.best().minimum.value, quantity)),
+            label: format!("refined, {}", value_words(refined.best().minimum.value, quantity)),
         },
     ];
     let (chart, legend) = retune_report::heat_map(
@@ -122,8 +125,8 @@ fn convergence(search: &Search, refined: &Refined, study: &Study) -> String {
     svg(&Sheet {
         description: format!(
             "{name} and the tuned parameters against the iteration, one below the other. {what} {name} from {} to {} in {} iterations.",
-            worth(ends[0], quantity),
-            worth(ends[1], quantity),
+            value_words(ends[0], quantity),
+            value_words(ends[1], quantity),
             rows.last().map_or(0, |row| row.iteration)
         ),
         stacked: true,

@@ -1,8 +1,8 @@
 //! The fine stage: `fminsearch` from each start, with its log.
 
 use super::log::{self, LOG, STARTS};
-use super::objective::{Task, kept, searched};
-use super::turns::Turns;
+use super::objective::{Task, journaled, searched};
+use super::turns::OrderedReport;
 use crate::Error;
 use crate::summary::MadeBy;
 use rayon::prelude::*;
@@ -14,31 +14,31 @@ use retune_store::{Directory, Journal};
 use retune_study::{Search, Study};
 use std::ops::ControlFlow;
 
-/// Refinements in a row, each with the motions that are found where the last one ended.
+/// Most successive refinements of a start, each with the motions found at the end of the one before.
 const ROUNDS: usize = 4;
 /// Values that differ by less than this share are the same.
 const SAME: f64 = 1e-6;
 
 pub struct Refined {
-    /// The objective that was minimised; it keeps the failed evaluations.
+    /// The minimised objective; it counts evaluations and failures.
     pub objective: DesignObjective,
     /// A run for each start, in the order of the starts.
     pub runs: Vec<Run>,
     pub winner: usize,
     /// Number of runs that begin at the starts.
     pub starts: usize,
-    /// Where the runs after these begin.
+    /// The start of each further run, in words.
     pub beyond: Vec<&'static str>,
 }
 
 pub struct Run {
     pub rows: Vec<Row>,
-    /// Its result, at the end of its descent where that is better.
+    /// The minimum found; that of the descent where it is lower.
     pub minimum: Minimum,
     pub descent: Option<Descended>,
 }
 
-/// What a descent began with, and its work.
+/// The initial value of a descent and its number of evaluations.
 #[derive(Clone, Copy, Debug)]
 pub struct Descended {
     /// The value at its start.
@@ -47,19 +47,19 @@ pub struct Descended {
 }
 
 impl Refined {
-    /// Where a run begins, if not at one of the starts.
+    /// The start of a further run, in words; none for runs from the starts.
     pub fn beyond(&self, run: usize) -> Option<&'static str> {
         self.beyond.get(run.checked_sub(self.starts)?).copied()
     }
 
-    /// Adds a run from elsewhere.
+    /// Adds a run that began at `from`.
     pub(super) fn push(&mut self, from: &'static str, run: Run) {
         self.runs.push(run);
         self.beyond.push(from);
         self.take_lowest();
     }
 
-    /// The run with the smallest value becomes the winner, if it is smaller than that of the present one.
+    /// Makes the run with the smallest value the winner; the present winner stays if none is smaller.
     pub(super) fn take_lowest(&mut self) {
         for number in 0..self.runs.len() {
             if self.runs[number].minimum.value < self.best().minimum.value {
@@ -68,13 +68,13 @@ impl Refined {
         }
     }
 
-    /// The run that found the smallest value, of equal ones the first; or that which was chosen for its safety.
+    /// The run with the smallest value, the first of equal ones; after `choice::choose` the run chosen for its certificate.
     pub fn best(&self) -> &Run {
         &self.runs[self.winner]
     }
 }
 
-/// Refines every start; writes `fminsearch-starts.csv` of all where there are several.
+/// Refines every start; if there are several, writes their rows to `fminsearch-starts.csv`.
 pub(super) fn refine(task: &Task, starts: &[Vec<f64>], results: &Directory) -> Result<Refined, Error> {
     let Task { study, search, watch, .. } = *task;
     let bar = watch.progress("fminsearch", starts.len() as u64);
@@ -82,7 +82,7 @@ pub(super) fn refine(task: &Task, starts: &[Vec<f64>], results: &Directory) -> R
     let refined = each(task, starts, |number, row, design| {
         if row.value < best {
             best = row.value;
-            bar.best(&log::worth(best, study.quantity()));
+            bar.best(&log::value_words(best, study.quantity()));
         }
         let lines = || {
             if number > begun {
@@ -91,13 +91,13 @@ pub(super) fn refine(task: &Task, starts: &[Vec<f64>], results: &Directory) -> R
             }
             watch.log(&log::screen(row, design))
         };
-        let mut told = Ok(());
-        bar.aside(&mut || told = lines());
+        let mut reported = Ok(());
+        bar.aside(&mut || reported = lines());
         if number > begun {
             bar.inc(u64::from(begun > 0)); // the start before it is done
             begun = number;
         }
-        told
+        reported
     })?;
     bar.finish();
     if refined.starts > 1 {
@@ -112,7 +112,7 @@ pub(super) fn refine(task: &Task, starts: &[Vec<f64>], results: &Directory) -> R
     Ok(refined)
 }
 
-/// A row for each iteration of a run, with its whole design.
+/// A row for each iteration of a run, with the complete design.
 fn table(study: &Study, refined: &Refined, run: &Run) -> Result<Table, Error> {
     let names = log::columns(refined.objective.variables(), study.quantity());
     let mut table = crate::columns::table(&names);
@@ -125,64 +125,65 @@ fn table(study: &Study, refined: &Refined, run: &Run) -> Result<Table, Error> {
     Ok(table)
 }
 
-/// Refines every start, several side by side. `tell` receives the number of the start, from 1, each row and its whole design, those of one start
-/// after those of another; its error ends the runs.
+/// Refines every start, in parallel where possible. `report` receives the number of the start, from 1, and each row with its complete
+/// design, in the order of the starts; its error ends the runs.
 pub(super) fn each(
     task: &Task,
     starts: &[Vec<f64>],
-    tell: impl FnMut(usize, &Row, &[f64]) -> Result<(), Error> + Send,
+    report: impl FnMut(usize, &Row, &[f64]) -> Result<(), Error> + Send,
 ) -> Result<Refined, Error> {
     let Task { study, search, journal, place, watch } = *task;
     let stage = format!("{place}fminsearch");
     let mut objective = searched(study, search, &search.variables);
-    let turns = Turns::new(tell);
-    let tell_of = |number: usize| {
-        let turns = &turns;
+    let ordered = OrderedReport::new(report);
+    let report_of = |number: usize| {
+        let ordered = &ordered;
         move |row: &Row, design: &[f64]| {
             watch.begin();
-            turns.tell(number, row, design)
+            ordered.report(number, row, design)
         }
     };
     let runs: Vec<Result<Run, Error>> = if objective.goal().follows_motions() {
-        // One after the other: each has the objective learn its own motions.
+        // Sequentially: each run changes the motions that the objective follows.
         let run = |(number, start): (usize, &Vec<f64>)| {
-            let run = run_following(&mut objective, search, start, (journal, &stage), tell_of(number));
-            turns.end(number);
+            let run = run_following(&mut objective, search, start, (journal, &stage), report_of(number));
+            ordered.end(number);
             run
         };
-        starts.iter().enumerate().map(run).take_while(|_| turns.all_told()).collect()
+        starts.iter().enumerate().map(run).take_while(|_| ordered.is_ok()).collect()
     } else {
         let run = |(number, start): (usize, &Vec<f64>)| {
-            let run = simplex(&objective, search, start, (journal, &stage), tell_of(number));
-            turns.end(number);
+            let run = simplex(&objective, search, start, (journal, &stage), report_of(number));
+            ordered.end(number);
             run
         };
         starts.par_iter().enumerate().map(run).collect()
     };
-    turns.check()?;
+    ordered.check()?;
     let runs = runs.into_iter().collect::<Result<Vec<Run>, Error>>()?;
     let mut refined = Refined { objective, runs, winner: 0, starts: starts.len(), beyond: Vec::new() };
     refined.take_lowest();
     Ok(refined)
 }
 
-/// A whole design, in the order of the columns of its tables.
+/// The complete design, in the order of the columns of its tables.
 pub(super) fn columns(objective: &DesignObjective, design: &[f64]) -> Result<Vec<f64>, Error> {
     let damper = objective.damper(design)?;
     Ok(Parameter::columns(objective.variables()).iter().map(|column| column.get(&damper)).collect())
 }
 
-/// A run whose objective looks at all motions: those at the start are followed; if others have more at the end, the run goes on from there with
-/// these. `tell` receives each row with its whole design and may end the run.
+/// A run whose objective covers all stable motions. The motions found at the start are followed; if the end has a motion with a larger
+/// value, the run continues from there with the motions found there. `report` receives each row with its complete design and may end the
+/// run.
 fn run_following(
     objective: &mut DesignObjective,
     search: &Search,
     start: &[f64],
     (journal, stage): (&Journal, &str),
-    mut tell: impl FnMut(&Row, &[f64]) -> ControlFlow<()>,
+    mut report: impl FnMut(&Row, &[f64]) -> ControlFlow<()>,
 ) -> Result<Run, Error> {
     objective.learn(start)?;
-    let mut whole = simplex(objective, search, start, (journal, &format!("{stage} {start:?}")), &mut tell)?;
+    let mut whole = simplex(objective, search, start, (journal, &format!("{stage} {start:?}")), &mut report)?;
     for round in 1..=ROUNDS {
         let from = whole.minimum.clone();
         if from.stop == Stop::Interrupted {
@@ -193,14 +194,15 @@ fn run_following(
             break;
         }
         let stage = format!("{stage} {:?}", from.x);
-        let on = |row: &Row| Row {
+        let shifted = |row: &Row| Row {
             iteration: row.iteration + from.iterations,
             func_count: row.func_count + from.func_count,
             ..row.clone()
         };
-        let next =
-            simplex(objective, search, &from.x, (journal, &stage), |row, design| tell(&on(row), design))?;
-        whole.rows.extend(next.rows.iter().map(on));
+        let next = simplex(objective, search, &from.x, (journal, &stage), |row, design| {
+            report(&shifted(row), design)
+        })?;
+        whole.rows.extend(next.rows.iter().map(shifted));
         whole.minimum = Minimum {
             iterations: from.iterations + next.minimum.iterations,
             func_count: from.func_count + next.minimum.func_count,
@@ -210,37 +212,41 @@ fn run_following(
     Ok(whole)
 }
 
-/// A run from a design, which nobody hears of.
-pub(super) fn quietly(task: &Task, objective: &mut DesignObjective, start: &[f64]) -> Result<Run, Error> {
+/// Runs the refinement from a design without reporting its progress.
+pub(super) fn run_unreported(
+    task: &Task,
+    objective: &mut DesignObjective,
+    start: &[f64],
+) -> Result<Run, Error> {
     let stage = format!("{}fminsearch", task.place);
-    let tell = |_: &Row, _: &[f64]| {
+    let report = |_: &Row, _: &[f64]| {
         task.watch.begin();
         ControlFlow::Continue(())
     };
     if objective.goal().follows_motions() {
-        run_following(objective, task.search, start, (task.journal, &stage), tell)
+        run_following(objective, task.search, start, (task.journal, &stage), report)
     } else {
-        simplex(objective, task.search, start, (task.journal, &stage), tell)
+        simplex(objective, task.search, start, (task.journal, &stage), report)
     }
 }
 
-/// One run, as [`run_following`] without motions to follow.
+/// One simplex run, with the motions that the objective follows held fixed.
 fn simplex(
     objective: &DesignObjective,
     search: &Search,
     start: &[f64],
     (journal, stage): (&Journal, &str),
-    mut tell: impl FnMut(&Row, &[f64]) -> ControlFlow<()>,
+    mut report: impl FnMut(&Row, &[f64]) -> ControlFlow<()>,
 ) -> Result<Run, Error> {
     let mut rows = Vec::new();
     let mut design = Ok(());
-    let found = minimize(kept(objective, journal, stage, || ()), start, search.options.clone(), |row| {
+    let found = minimize(journaled(objective, journal, stage, || ()), start, search.options.clone(), |row| {
         if journal.is_broken() {
             return ControlFlow::Break(());
         }
         rows.push(row.clone());
         match columns(objective, &row.best) {
-            Ok(whole) => tell(row, &whole),
+            Ok(whole) => report(row, &whole),
             Err(error) => {
                 design = Err(error);
                 ControlFlow::Break(())

@@ -1,5 +1,5 @@
-//! The page of a search, `report.html`: the answer first, then how sure it is and how it was found. One file that needs no network
-//! and no script. Every number on it is computed or read from what the search has found; nothing is stated that was not.
+//! The page of a search, `report.html`: the answer first, then how sure it is and how it was found. One file that needs no network and no
+//! script. Every number on it is computed or read from the results of the search.
 //!
 //! Read `findings` (what a page is made of), `answer`, then the sections in their order on the page: `response`,
 //! `motion`, `sensitivity`, `course`. `numbers` has how numbers are written, `retune_report::html` the elements.
@@ -23,7 +23,7 @@ use retune_study::joined;
 
 pub const FILE: &str = "report.html";
 
-/// Writes the page, after all other files of the results but those that say what made them.
+/// Writes the page. It lists the other files, so only the input and the manifest are written after it.
 pub(crate) fn write(findings: &Findings, results: &Directory) -> Result<(), Error> {
     let flags = findings.optimum.flags();
     let compared = findings.compared();
@@ -32,7 +32,7 @@ pub(crate) fn write(findings: &Findings, results: &Directory) -> Result<(), Erro
         || (!findings.study.scene.forcing.is_transient()).then(|| response::section(findings, &compared));
     let (response, motion) = rayon::join(over_frequency, || motion::section(findings));
     let mut files = results.whole()?;
-    files.retain(|name| name != FILE); // that of a run that was cut off
+    files.retain(|name| name != FILE); // left by an interrupted run
     let answer = answer::section(findings, &compared, &flags);
     let mut sections: Vec<_> = [answer].into_iter().chain(response).collect();
     sections.extend([

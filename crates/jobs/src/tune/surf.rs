@@ -1,7 +1,7 @@
 //! The coarse stage: the objective on a grid.
 
-use super::log::{GRID, worth};
-use super::objective::{Task, coarse, kept, searched};
+use super::log::{GRID, value_words};
+use super::objective::{Task, coarse, journaled, searched};
 use super::refine::columns;
 use crate::Error;
 use crate::rows::{Rows, compute};
@@ -20,11 +20,11 @@ pub struct Surf {
     /// The grid's parameters, in the order of its axes.
     pub variables: Vec<Parameter>,
     pub grid: Grid,
-    /// Its value at each point in the unit of the quantity, as exact as the study wants its grid; [`Coarse::up_to`] where it is above that,
-    /// +∞ where it could not be computed.
+    /// The value at each point in the unit of the quantity, by the objective of the grid; at most [`Coarse::up_to`], +∞ where it could not
+    /// be computed.
     pub values: Vec<f64>,
     pub best: usize,
-    /// Its value in the unit of the quantity, at the tolerance of refinements and with the peaks between samples.
+    /// The value at the best point in the unit of the quantity, at the tolerance of refinements and with the peaks between samples.
     pub least: f64,
     /// The numbers of the points where refinements start.
     chosen: Vec<usize>,
@@ -36,13 +36,13 @@ pub struct Surf {
 /// The designs of a grid, each with its value.
 pub(super) struct Designs {
     pub objective: DesignObjective,
-    /// The value from which on it does not matter how large one is.
+    /// The value above which values are not distinguished.
     pub most: f64,
     pub grid: Grid,
 }
 
 impl Designs {
-    /// Those of the grid of a study; none where it has no grid.
+    /// The designs of the grid of a study; none where it has no grid.
     pub(super) fn of(study: &Study, search: &Search) -> Option<Self> {
         let (variables, grid) = search.surf.clone()?;
         Some(Self { objective: coarse(study, search, &variables), most: study.coarse().up_to(), grid })
@@ -75,7 +75,7 @@ pub(super) fn surf(task: &Task, results: &Directory) -> Result<Option<Surf>, Err
     let axes: Vec<String> = grid.axes().iter().map(|axis| axis.points().to_string()).collect();
     let (axes, points, over) =
         (axes.join(" x "), counted(grid.len() as u64, "point"), joined(&variables, " "));
-    let up_to = study.coarse().most.map(|most| format!(", up to {}", worth(most, study.quantity())));
+    let up_to = study.coarse().most.map(|most| format!(", up to {}", value_words(most, study.quantity())));
     let up_to = up_to.unwrap_or_default();
     watch.log(&format!("surf: {axes} = {points} over {over}{}{up_to}", study.coarse()))?;
 
@@ -89,7 +89,7 @@ pub(super) fn surf(task: &Task, results: &Directory) -> Result<Option<Surf>, Err
 
     let (failures, mut counts) = (objective.failures(), objective.counts());
     let exact = searched(study, search, &variables);
-    let value = kept(&exact, journal, "surf", || ());
+    let value = journaled(&exact, journal, "surf", || ());
     let is_coarse = study.coarse() != Coarse::default();
     let at = |i: usize| if is_coarse { value(&point(&grid, i), f64::INFINITY) } else { values[i] };
     let chosen = best_separated_above(&grid, &values, at, search.starts, search.apart);
@@ -111,7 +111,7 @@ fn point(grid: &Grid, i: usize) -> Vec<f64> {
     point
 }
 
-/// A row for each point, its whole design and the value.
+/// Writes a row for each point: the complete design and the value.
 fn write(
     objective: &DesignObjective,
     grid: &Grid,
@@ -164,7 +164,7 @@ impl Surf {
             .zip(point)
             .map(|(variable, value)| format!("{variable} = {value}"))
             .collect();
-        let least = worth(self.least, quantity);
+        let least = value_words(self.least, quantity);
         format!("surf: {seconds:.1} s; least {} {least} at {}{failed}", quantity.name(), at.join(", "))
     }
 }

@@ -1,20 +1,21 @@
-//! The best TMD that a damper with walls can be: its gaps as wide as bounds and limits allow, its spring and dashpot the best in closed form.
+//! The best TMD that a damper with walls can be: the gaps as wide as bounds and limits allow, the spring and dashpot optimal in closed
+//! form.
 
 use super::objective::searched;
 use retune_model::{Damper, Measure, NonNegative, Parameter, Positive};
 use retune_optim::{DesignObjective, Foot, Goal, Limit, Response};
 use retune_study::{Search, Study};
 
-/// The springs and dashpots from which the best is taken, in those of Den Hartog's.
+/// Ranges of the spring and of the dashpot that are searched, as multiples of Den Hartog's optimum.
 const TUNINGS: [[f64; 2]; 2] = [[0.03, 30.0], [0.03, 300.0]];
-/// Gaps without a bound are so many times the stroke.
+/// Width of a gap without a bound, as a multiple of the stroke.
 const OPEN: f64 = 4.0;
-/// Share of a gap that a stroke may have.
+/// Largest stroke, as a share of the gap.
 const FREE: f64 = 0.999;
 /// Share of a gap that stands where the limit of the cavity is why it is no wider, so that one built a little wider keeps it, if the stroke leaves as much.
 const WITHIN: f64 = 0.99;
 
-/// The tuned parameters of that TMD; none of a damper without walls, of one that is tuned as a TMD anyway, or where it cannot be computed.
+/// The tuned parameters of that TMD; none for a damper without walls, for a steady objective, or where it cannot be computed.
 pub(super) fn tmd(study: &Study, search: &Search) -> Option<Vec<f64>> {
     let goal = study.goal();
     if search.damper.contact.is_none() || goal.objective.is_steady() {
@@ -26,12 +27,15 @@ pub(super) fn tmd(study: &Study, search: &Search) -> Option<Vec<f64>> {
     let springs: Vec<usize> = (0..search.variables.len())
         .filter(|&i| matches!(search.variables[i], Parameter::K2 | Parameter::C2))
         .collect();
-    let of = steady(study, search, &springs, room)?;
+    let objective = steady(study, search, &springs, room)?;
     let bounds: Vec<_> = springs.iter().map(|&i| search.options.bounds[i]).collect();
-    let (_, valley) = of.valleys(TUNINGS, &bounds).into_iter().next()?;
-    let best = of.descend(&bounds, &valley).end.x;
-    let stroke =
-        of.evaluate(&of.scene(&best).ok()?, f64::INFINITY).ok()?.reached.get(Limit::Of(Measure::Stroke));
+    let (_, valley) = objective.valleys(TUNINGS, &bounds).into_iter().next()?;
+    let best = objective.descend(&bounds, &valley).end.x;
+    let stroke = objective
+        .evaluate(&objective.scene(&best).ok()?, f64::INFINITY)
+        .ok()?
+        .reached
+        .get(Limit::Of(Measure::Stroke));
     let mut tmd = search.own();
     for (&i, &value) in springs.iter().zip(&best) {
         tmd[i] = value;
@@ -50,27 +54,29 @@ pub(super) fn tmd(study: &Study, search: &Search) -> Option<Vec<f64>> {
     Some(tmd)
 }
 
-/// The best spring and dashpot of a steady objective, in closed form: the end of a descent from the deepest valley of a grid, under all limits and bounds
-/// of the study. None of another objective.
+/// The start and the end of a descent from the deepest valley of a grid over spring and dashpot, under all limits and bounds of the study;
+/// none unless the objective is steady.
 pub(super) fn best_steady(study: &Study, search: &Search) -> Option<(Vec<f64>, Foot)> {
     if !study.goal().objective.is_steady() {
         return None;
     }
-    let of = searched(study, search, &search.variables);
+    let objective = searched(study, search, &search.variables);
     let springs = |variable: &Parameter| matches!(variable, Parameter::K2 | Parameter::C2);
     let bounds = &search.options.bounds;
-    // Another parameter, as the mass, begins at that of the study.
+    // Other parameters, such as the mass, start at the study's values.
     let mut start = search.own();
     let which: Vec<usize> = (0..start.len()).filter(|&i| springs(&search.variables[i])).collect();
-    let alone = searched(study, search, &which.iter().map(|&i| search.variables[i]).collect::<Vec<_>>());
-    let own: Vec<_> = which.iter().map(|&i| bounds[i]).collect();
-    let (_, valley) = alone.valleys(TUNINGS, &own).into_iter().next().filter(|_| !which.is_empty())?;
+    let springs_only =
+        searched(study, search, &which.iter().map(|&i| search.variables[i]).collect::<Vec<_>>());
+    let spring_bounds: Vec<_> = which.iter().map(|&i| bounds[i]).collect();
+    let (_, valley) =
+        springs_only.valleys(TUNINGS, &spring_bounds).into_iter().next().filter(|_| !which.is_empty())?;
     which.iter().zip(valley).for_each(|(&i, value)| start[i] = value);
-    let foot = of.descend(bounds, &start);
+    let foot = objective.descend(bounds, &start);
     Some((start, foot))
 }
 
-/// The steady objective over the spring and the dashpot of the damper without its walls, its stroke at most `room`.
+/// The steady objective over the spring and the dashpot of the damper without its walls, with a stroke of at most `room`.
 fn steady(study: &Study, search: &Search, springs: &[usize], room: f64) -> Option<DesignObjective> {
     let goal = study.goal();
     let mut objective = goal.objective;
@@ -87,13 +93,13 @@ fn steady(study: &Study, search: &Search, springs: &[usize], room: f64) -> Optio
     Some(DesignObjective::new(study.scene, damper, variables, goal, study.solver.searching()))
 }
 
-/// D and C of the cavity in which the smaller is largest: at their bounds, or as near to half of the cavity's limit as these allow. Infinite
-/// where there is no bound.
+/// D and C that maximise the smaller of the two: at their upper bounds, or as close to half of the cavity's limit as the bounds allow.
+/// Infinite where there is no bound.
 fn gaps(search: &Search, cavity: Option<f64>) -> [f64; 2] {
     let range = |variable: Parameter| {
-        let own = variable.get(&search.damper);
+        let fixed = variable.get(&search.damper);
         let bounds = search.variables.iter().position(|other| *other == variable);
-        bounds.map_or([own, own], |i| {
+        bounds.map_or([fixed, fixed], |i| {
             let bounds = search.options.bounds[i];
             [bounds.lower.unwrap_or(0.0), bounds.upper.unwrap_or(f64::INFINITY)]
         })

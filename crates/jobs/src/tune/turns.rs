@@ -1,4 +1,4 @@
-//! Rows of runs that go on side by side, told one run after the other.
+//! Reports the rows of concurrent runs in the order of the runs.
 
 use crate::Error;
 use retune_optim::Row;
@@ -6,72 +6,72 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
-/// Whose turn it is: its rows are told as they come, those of later runs wait. Once a row cannot be told, all runs are to end.
-pub struct Turns<T>(Mutex<State<T>>);
+/// Reports rows of the first unfinished run as they arrive and buffers those of later runs. After the first error nothing more is reported
+/// and all runs are to stop.
+pub struct OrderedReport<T>(Mutex<State<T>>);
 
 struct State<T> {
-    tell: T,
-    told: Result<(), Error>,
-    /// The run whose rows are told.
-    turn: usize,
-    later: BTreeMap<usize, Later>,
+    report: T,
+    outcome: Result<(), Error>,
+    /// The first unfinished run, whose rows are reported at once.
+    current: usize,
+    pending: BTreeMap<usize, Pending>,
 }
 
-/// What a run has to tell in its turn, and whether it has ended.
+/// The buffered rows of a run, and whether it has ended.
 #[derive(Default)]
-struct Later {
+struct Pending {
     rows: Vec<(Row, Vec<f64>)>,
     ended: bool,
 }
 
-impl<T: FnMut(usize, &Row, &[f64]) -> Result<(), Error>> Turns<T> {
-    /// Runs 0, 1, …, of which `tell` hears as 1, 2, ….
-    pub fn new(tell: T) -> Self {
-        Self(Mutex::new(State { tell, told: Ok(()), turn: 0, later: BTreeMap::new() }))
+impl<T: FnMut(usize, &Row, &[f64]) -> Result<(), Error>> OrderedReport<T> {
+    /// Runs are numbered from 0 here and from 1 in calls of `report`.
+    pub fn new(report: T) -> Self {
+        Self(Mutex::new(State { report, outcome: Ok(()), current: 0, pending: BTreeMap::new() }))
     }
 
-    /// A run has a row and its whole design to tell.
-    pub fn tell(&self, run: usize, row: &Row, design: &[f64]) -> ControlFlow<()> {
+    /// Reports or buffers a row of a run with its complete design.
+    pub fn report(&self, run: usize, row: &Row, design: &[f64]) -> ControlFlow<()> {
         let state = &mut *self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if run == state.turn {
-            state.tell(row, design);
+        if run == state.current {
+            state.report(row, design);
         } else {
-            state.later.entry(run).or_default().rows.push((row.clone(), design.to_vec()));
+            state.pending.entry(run).or_default().rows.push((row.clone(), design.to_vec()));
         }
-        if state.told.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        if state.outcome.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }
 
-    /// A run has ended: it is the turn of the next one that has not.
+    /// Marks a run as ended and reports the buffered rows up to the next unfinished run.
     pub fn end(&self, run: usize) {
         let state = &mut *self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        state.later.entry(run).or_default().ended = true;
-        while state.later.get(&state.turn).is_some_and(|run| run.ended) {
-            state.turn += 1;
-            let next = state.later.entry(state.turn).or_default();
+        state.pending.entry(run).or_default().ended = true;
+        while state.pending.get(&state.current).is_some_and(|run| run.ended) {
+            state.current += 1;
+            let next = state.pending.entry(state.current).or_default();
             for (row, design) in std::mem::take(&mut next.rows) {
-                state.tell(&row, &design);
+                state.report(&row, &design);
             }
         }
     }
 
-    /// Whether all could be told so far.
-    pub fn all_told(&self) -> bool {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).told.is_ok()
+    /// Whether no report has failed so far.
+    pub fn is_ok(&self) -> bool {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).outcome.is_ok()
     }
 
-    /// The same, when all runs have ended.
+    /// Returns the outcome after all runs have ended.
     ///
-    /// # Errors
-    /// Why the first row that could not be told was not.
+    /// # Errors The error of the first report that failed.
     pub fn check(self) -> Result<(), Error> {
-        self.0.into_inner().unwrap_or_else(PoisonError::into_inner).told
+        self.0.into_inner().unwrap_or_else(PoisonError::into_inner).outcome
     }
 }
 
 impl<T: FnMut(usize, &Row, &[f64]) -> Result<(), Error>> State<T> {
-    fn tell(&mut self, row: &Row, design: &[f64]) {
-        if self.told.is_ok() {
-            self.told = (self.tell)(self.turn + 1, row, design);
+    fn report(&mut self, row: &Row, design: &[f64]) {
+        if self.outcome.is_ok() {
+            self.outcome = (self.report)(self.current + 1, row, design);
         }
     }
 }
@@ -87,34 +87,34 @@ mod tests {
 
     #[test]
     fn contract_rows_of_runs_side_by_side_are_told_run_after_run() {
-        let mut told = Vec::new();
-        let turns = Turns::new(|run, row, _| {
-            told.push((run, row.iteration));
+        let mut reported = Vec::new();
+        let ordered = OrderedReport::new(|run, row, _| {
+            reported.push((run, row.iteration));
             Ok(())
         });
         for (run, iteration) in [(1, 0), (2, 0), (0, 0), (2, 1), (0, 1)] {
-            assert!(turns.tell(run, &row(iteration), &[]).is_continue());
+            assert!(ordered.report(run, &row(iteration), &[]).is_continue());
         }
-        turns.end(1);
-        assert!(turns.tell(0, &row(2), &[]).is_continue());
-        turns.end(0);
-        assert!(turns.tell(2, &row(2), &[]).is_continue());
-        turns.end(2);
-        turns.check().expect("told");
-        assert_eq!(told, [(1, 0), (1, 1), (1, 2), (2, 0), (3, 0), (3, 1), (3, 2)]);
+        ordered.end(1);
+        assert!(ordered.report(0, &row(2), &[]).is_continue());
+        ordered.end(0);
+        assert!(ordered.report(2, &row(2), &[]).is_continue());
+        ordered.end(2);
+        ordered.check().expect("told");
+        assert_eq!(reported, [(1, 0), (1, 1), (1, 2), (2, 0), (3, 0), (3, 1), (3, 2)]);
     }
 
     #[test]
     fn contract_a_row_that_cannot_be_told_ends_all_runs() {
-        let turns = Turns::new(|_, row, _| match row.iteration {
+        let ordered = OrderedReport::new(|_, row, _| match row.iteration {
             2 => Err(Error::Figure { name: "row 2".to_owned(), problem: String::new() }),
             3 => Err(Error::Figure { name: "row 3".to_owned(), problem: String::new() }),
             _ => Ok(()),
         });
-        assert!(turns.tell(1, &row(1), &[]).is_continue());
-        assert!(turns.tell(0, &row(2), &[]).is_break());
-        assert!(turns.tell(1, &row(3), &[]).is_break());
-        turns.end(0);
-        assert!(matches!(turns.check(), Err(Error::Figure { name, .. }) if name == "row 2"));
+        assert!(ordered.report(1, &row(1), &[]).is_continue());
+        assert!(ordered.report(0, &row(2), &[]).is_break());
+        assert!(ordered.report(1, &row(3), &[]).is_break());
+        ordered.end(0);
+        assert!(matches!(ordered.check(), Err(Error::Figure { name, .. }) if name == "row 2"));
     }
 }

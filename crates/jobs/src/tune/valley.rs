@@ -1,6 +1,7 @@
-//! How far each parameter of a design may go, the others held, until its value is 0.1 % larger: what its digits are worth.
+//! The range of each parameter of a design, the others held, within which the value grows by at most 0.1 %: it tells how many digits
+//! matter.
 
-use super::objective::{Task, kept, searched};
+use super::objective::{Task, journaled, searched};
 use crate::summary::is_no_gap;
 use rayon::prelude::*;
 use retune_model::Parameter;
@@ -9,79 +10,79 @@ use retune_study::{rounded, short};
 use serde::Serialize;
 use std::sync::{Mutex, PoisonError};
 
-/// The share by which the value may grow.
+/// Allowed relative growth of the value.
 const ALLOWED: f64 = 1e-3;
-/// Steps outwards, as shares of the parameter; below the first nothing is told apart.
+/// Distances at which the value is probed, as shares of the parameter; smaller changes are not resolved.
 const STEPS: [f64; 8] = [1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 0.9, 9.0];
-/// Halvings of the step that fails.
+/// Bisections between the last step within the allowance and the first beyond it.
 const HALVINGS: usize = 5;
-/// A range that is wider than this share of the parameter is told.
+/// A range wider than this share of the parameter is reported as flat.
 const FLAT: f64 = 0.1;
 
-/// The range of a parameter in which the value of a design is at most 0.1 % larger, as far as was looked; at each step outwards it was.
+/// The range of a parameter in which the value of a design is at most 0.1 % larger, as far as it was probed: at every step outwards.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct Valley {
     pub variable: Parameter,
-    /// Smallest and largest value that was found to do.
+    /// Smallest and largest parameter value within the allowance.
     pub from: f64,
     pub to: f64,
-    /// Whether the last step, to a bound or to ten times the value, did too.
+    /// Whether even the outermost step upwards, to the bound or to ten times the value, is within the allowance.
     pub open: bool,
     #[serde(skip)]
     own: f64,
 }
 
-/// The valleys about a design, and the lowest design met there, if it is lower by more than the share by which they may rise.
+/// The valleys of a design, and the lowest design probed, if its value is lower by more than [`ALLOWED`].
 pub(super) struct Measured {
     pub valleys: Vec<Valley>,
     pub lower: Option<Vec<f64>>,
 }
 
-/// Measures it for each varied parameter of a design.
+/// Measures the valley of each varied parameter of a design.
 pub(super) fn measure(task: &Task, design: &[f64]) -> Measured {
     let Task { study, search, journal, .. } = *task;
     let mut objective = searched(study, search, &search.variables);
     if objective.goal().follows_motions() && objective.learn(design).is_err() {
         return Measured { valleys: Vec::new(), lower: None };
     }
-    let value = kept(&objective, journal, "valley", || ());
-    let own = value(design, f64::INFINITY);
-    let most = (1.0 + ALLOWED) * own;
-    let lowest = Mutex::new(((1.0 - ALLOWED) * own, None));
-    let does = |i: usize, x: f64| {
+    let value = journaled(&objective, journal, "valley", || ());
+    let base = value(design, f64::INFINITY);
+    let most = (1.0 + ALLOWED) * base;
+    let lowest = Mutex::new(((1.0 - ALLOWED) * base, None));
+    let is_within = |i: usize, x: f64| {
         let mut other = design.to_vec();
         other[i] = x;
         let found = value(&other, most);
         let lowest = &mut *lowest.lock().unwrap_or_else(PoisonError::into_inner);
-        // Of equal ones the first in order, whichever thread came first.
+        // Ties go to the smaller design, so that the result does not depend on the order of the threads.
         if found < lowest.0 || found == lowest.0 && lowest.1.as_ref().is_some_and(|known| other < *known) {
             *lowest = (found, Some(other));
         }
         found <= most
     };
     let reach = |(i, outwards): (usize, f64)| {
-        let (own, Bounds { lower, upper }) =
+        let (x, Bounds { lower, upper }) =
             (design[i], search.options.bounds.get(i).copied().unwrap_or_default());
         let at = |share: f64| {
-            (own * (1.0 + outwards * share))
+            (x * (1.0 + outwards * share))
                 .clamp(lower.unwrap_or(0.0).max(0.0), upper.unwrap_or(f64::INFINITY))
         };
-        let (mut good, mut last) = (0.0, None);
+        let (mut good, mut failed) = (0.0, None);
         for share in STEPS {
             if at(share) == at(good) {
                 break; // at a bound
             }
-            if !does(i, at(share)) {
-                last = Some(share);
+            if !is_within(i, at(share)) {
+                failed = Some(share);
                 break;
             }
             good = share;
         }
-        let open = last.is_none();
-        if let Some(mut bad) = last {
+        let open = failed.is_none();
+        if let Some(mut bad) = failed {
             for _ in 0..HALVINGS {
                 let middle = 0.5 * (good + bad);
-                if does(i, at(middle)) { good = middle } else { bad = middle }
+                if is_within(i, at(middle)) { good = middle } else { bad = middle }
             }
         }
         (at(good), open)
@@ -97,10 +98,10 @@ pub(super) fn measure(task: &Task, design: &[f64]) -> Measured {
 }
 
 impl Valley {
-    /// The digits that tell: rounded to them the parameter stays in its range, at least two and at most six; six where it may go no way at all.
+    /// The significant digits, two to six, that keep the rounded parameter in its range; six where the range is empty.
     pub(crate) fn digits(&self) -> usize {
         let share = (self.own - self.from).min(self.to - self.own) / self.own.abs();
-        // At an end of its range it may go one way only.
+        // At an end of its range it may move one way only.
         let share = if share > 0.0 { share } else { (self.to - self.from) / self.own.abs() };
         if share > 0.0 && share.is_finite() {
             ((1.0 - (2.0 * share).log10()).ceil() as usize).clamp(2, 6)
@@ -114,7 +115,7 @@ impl Valley {
         self.to - self.from > FLAT * self.own.abs() && !is_no_gap(self.variable, self.to)
     }
 
-    /// A flat direction in words, its ends rounded to the inside; none of a parameter that matters.
+    /// A flat direction in words, its ends rounded inwards; none if the range is narrow.
     pub(crate) fn words(&self) -> Option<String> {
         if !self.is_flat() {
             return None;
@@ -122,17 +123,17 @@ impl Valley {
         let Self { variable, from, to, open, .. } = self;
         let (name, unit) = (variable.symbol(), variable.unit());
         let [low, high] = [inward(*from, f64::ceil), inward(*to, f64::floor)].map(short);
-        // Beyond the last step it was not looked.
+        // Beyond the last step nothing was probed.
         let least = if *open { "at least " } else { "" };
         Some(format!("{name} from {low} to {least}{high} {unit}"))
     }
 }
 
-/// A number to two digits, in the direction that `round`, a ceiling or a floor, takes.
+/// A number to two digits, rounded by `round`, a ceiling or a floor.
 fn inward(value: f64, round: impl Fn(f64) -> f64) -> f64 {
-    let own: f64 = rounded(value, 2).parse().unwrap_or(value);
-    if own == value || value <= 0.0 {
-        return own;
+    let nearest: f64 = rounded(value, 2).parse().unwrap_or(value);
+    if nearest == value || value <= 0.0 {
+        return nearest;
     }
     let unit = 10f64.powf(value.log10().floor() - 1.0);
     let inside = round(value / unit) * unit;

@@ -1,6 +1,6 @@
 //! The report of a verification.
 
-use crate::again::{Numbers, Row, Source, each_row};
+use crate::recompute::{Numbers, Row, Source, each_row};
 use crate::{Error, Observer};
 use rayon::prelude::*;
 use retune_study::counted;
@@ -8,22 +8,22 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// What was found of a file, or of a directory.
+/// A finding on a file or a directory.
 #[derive(Debug, Serialize)]
 struct Finding {
     /// The file below the directory that is verified; empty for the directory itself.
     file: String,
-    /// Whether it holds; null where that cannot be checked.
+    /// Whether it holds; null if that cannot be checked.
     holds: Option<bool>,
     words: String,
 }
 
-/// A report to the observer; it collects what does not hold and what cannot be checked.
+/// Reports to the observer, and collects what does not hold or cannot be checked.
 pub struct Report<'a> {
     pub watch: &'a dyn Observer,
     /// The largest relative difference that counts as held.
     within: f64,
-    /// The prefix of a file's name in a message: its directory, where there are several.
+    /// The prefix of file names in messages: the directory, if there are several.
     pub place: String,
     pub problems: Vec<String>,
     unchecked: Vec<String>,
@@ -31,7 +31,7 @@ pub struct Report<'a> {
 }
 
 impl<'a> Report<'a> {
-    /// A report of nothing yet; numbers that differ by at most the share `within` hold.
+    /// An empty report; numbers hold if their relative difference is at most `within`.
     pub fn new(watch: &'a dyn Observer, within: f64) -> Self {
         let (problems, unchecked, findings) = (Vec::new(), Vec::new(), Vec::new());
         Self { watch, within, place: String::new(), problems, unchecked, findings }
@@ -43,7 +43,7 @@ impl<'a> Report<'a> {
         self.findings.push(Finding { file, holds, words: words.to_owned() });
     }
 
-    /// Reports what does not hold; `name` is the file, or empty.
+    /// Reports a file that does not hold; `name` is empty for the directory.
     pub fn fail(&mut self, name: &str, words: &str) -> Result<(), Error> {
         let between = if name.is_empty() { "" } else { ", " };
         self.problems.push(format!("{}{name}{between}{words}", self.place));
@@ -59,13 +59,19 @@ impl<'a> Report<'a> {
         self.watch.result(&format!("  cannot be checked: {words}"))
     }
 
-    /// Compares a JSON file, or a part of it, with the same made again.
-    pub fn compare(&mut self, name: &str, what: &str, said: &Value, again: &Value) -> Result<(), Error> {
-        let tally = differences(said, again, self.within);
-        self.tell(name, &format!("{what} made again"), &tally)
+    /// Compares a JSON file, or a part of it, with its recomputed value.
+    pub fn compare(
+        &mut self,
+        name: &str,
+        what: &str,
+        stored: &Value,
+        recomputed: &Value,
+    ) -> Result<(), Error> {
+        let tally = differences(stored, recomputed, self.within);
+        self.report_tally(name, &format!("{what} made again"), &tally)
     }
 
-    /// Computes at most `most` rows again, evenly spread, and compares every number of them with the file.
+    /// Recomputes at most `most` rows, evenly spread, and compares each of their numbers with the file.
     pub fn check_rows(&mut self, path: &Path, name: &str, source: &Source, most: usize) -> Result<(), Error> {
         let mut applicable = Vec::new();
         let mut names = csv::StringRecord::new();
@@ -86,8 +92,8 @@ impl<'a> Report<'a> {
                 rows.push(row.fields.clone());
             }
         })?;
-        let again = |fields: &csv::StringRecord| (source.row)(Row { names: &names, fields });
-        let found: Vec<Option<Numbers>> = rows.par_iter().map(again).collect();
+        let recompute = |fields: &csv::StringRecord| (source.row)(Row { names: &names, fields });
+        let found: Vec<Option<Numbers>> = rows.par_iter().map(recompute).collect();
         let mut tally = Tally::default();
         let compared = found.iter().flatten().next().map_or_else(String::new, columns);
         for ((fields, number), found) in rows.iter().zip(&wanted).zip(found) {
@@ -95,18 +101,18 @@ impl<'a> Report<'a> {
             let at = |name: &str| format!("{name} in row {}", number + 1);
             match found {
                 Some(found) => {
-                    let mut see =
-                        |(name, found): &(String, f64)| tally.see(row.number(name), *found, || at(name));
-                    found.iter().for_each(&mut see);
+                    let mut compare =
+                        |(name, found): &(String, f64)| tally.compare(row.number(name), *found, || at(name));
+                    found.iter().for_each(&mut compare);
                 }
                 None => tally.differs(f64::INFINITY, || at("what no command writes")),
             }
         }
-        self.tell(name, &format!("{kept} of {} run again{compared}", counted(count, "row")), &tally)
+        self.report_tally(name, &format!("{kept} of {} run again{compared}", counted(count, "row")), &tally)
     }
 
-    /// Reports how many numbers of the file `name` differ; `what` says which were compared.
-    pub fn tell(&mut self, name: &str, what: &str, tally: &Tally) -> Result<(), Error> {
+    /// Reports how many numbers of the file `name` differ; `what` describes those compared.
+    pub fn report_tally(&mut self, name: &str, what: &str, tally: &Tally) -> Result<(), Error> {
         let most = if tally.most.is_finite() {
             format!(
                 "by at most {:.1e} of {} value",
@@ -156,7 +162,7 @@ impl<'a> Report<'a> {
     }
 }
 
-/// The most columns that are named one by one.
+/// Most columns that are named individually.
 const MOST_NAMED: usize = 8;
 
 /// Which columns of a table are compared, in words.
@@ -168,23 +174,23 @@ fn columns(numbers: &Numbers) -> String {
     }
 }
 
-/// The differences between the numbers of a file and those computed again.
+/// The differences between stored and recomputed numbers.
 #[derive(Default)]
 pub struct Tally {
     differ: usize,
     most: f64,
-    /// Where the first of the largest differences stands, and what the number was and is.
+    /// The place of the first largest difference, with both numbers.
     at: String,
 }
 
 impl Tally {
     /// Compares two numbers; two that are not finite are the same: no value.
-    fn see(&mut self, said: f64, found: f64, at: impl FnOnce() -> String) {
+    fn compare(&mut self, stored: f64, found: f64, at: impl FnOnce() -> String) {
         let none = |value: f64| !value.is_finite();
-        if said.to_bits() != found.to_bits() && !(none(said) && none(found)) {
-            let difference = (said - found).abs() / said.abs().max(found.abs());
+        if stored.to_bits() != found.to_bits() && !(none(stored) && none(found)) {
+            let difference = (stored - found).abs() / stored.abs().max(found.abs());
             let by = if difference.is_finite() { difference } else { f64::INFINITY };
-            self.differs(by, || format!("{} is {said:e}, now {found:e}", at()));
+            self.differs(by, || format!("{} is {stored:e}, now {found:e}", at()));
         }
     }
 
@@ -196,36 +202,37 @@ impl Tally {
     }
 }
 
-/// Compares every field of `again`: numbers by their relative difference, anything else must be equal. Fields that `again` does not
-/// have, and the version of Retune, are ignored; so are texts made of numbers where these may differ by a share `within`.
-fn differences(said: &Value, again: &Value, within: f64) -> Tally {
+/// Compares every field of `recomputed`: numbers by their relative difference, anything else must be equal. Fields that `recomputed` does
+/// not have and the version of Retune are ignored; so are texts with numbers in them where `within` allows differences.
+fn differences(stored: &Value, recomputed: &Value, within: f64) -> Tally {
     let mut tally = Tally::default();
-    visit(said, again, within, "", &mut tally);
+    visit(stored, recomputed, within, "", &mut tally);
     tally
 }
 
-/// `path` has the names of the fields above, each with a full stop behind it.
-fn visit(said: &Value, again: &Value, within: f64, path: &str, tally: &mut Tally) {
+/// `path` has the names of the enclosing fields, each followed by a full stop.
+fn visit(stored: &Value, recomputed: &Value, within: f64, path: &str, tally: &mut Tally) {
     let at = || path.trim_end_matches('.').to_owned();
-    match (said, again) {
+    match (stored, recomputed) {
         (_, Value::Object(fields)) => {
             let made_of_numbers = |name: &str| within > 0.0 && ["words", "at"].contains(&name);
-            for (name, again) in fields.iter().filter(|(name, _)| *name != "retune" && !made_of_numbers(name))
+            for (name, recomputed) in
+                fields.iter().filter(|(name, _)| *name != "retune" && !made_of_numbers(name))
             {
-                visit(&said[name.as_str()], again, within, &format!("{path}{name}."), tally);
+                visit(&stored[name.as_str()], recomputed, within, &format!("{path}{name}."), tally);
             }
         }
-        (Value::Array(said), Value::Array(again)) if said.len() == again.len() => {
-            for (i, (said, again)) in said.iter().zip(again).enumerate() {
-                visit(said, again, within, &format!("{path}{i}."), tally);
+        (Value::Array(stored), Value::Array(recomputed)) if stored.len() == recomputed.len() => {
+            for (i, (stored, recomputed)) in stored.iter().zip(recomputed).enumerate() {
+                visit(stored, recomputed, within, &format!("{path}{i}."), tally);
             }
         }
         // A number that is not finite is null.
         (Value::Number(_) | Value::Null, Value::Number(_) | Value::Null) => {
             let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
-            tally.see(number(said), number(again), at);
+            tally.compare(number(stored), number(recomputed), at);
         }
-        _ if said == again => {}
+        _ if stored == recomputed => {}
         _ => tally.differs(f64::INFINITY, at),
     }
 }
@@ -237,15 +244,16 @@ mod tests {
 
     #[test]
     fn contract_every_leaf_is_compared() {
-        let again = json!({ "a": [1.0, null], "retune": "2", "b": { "verdict": "robust", "words": "so" } });
-        let look = |said: Value, within: f64| {
-            let Tally { differ, most, .. } = differences(&said, &again, within);
+        let recomputed =
+            json!({ "a": [1.0, null], "retune": "2", "b": { "verdict": "robust", "words": "so" } });
+        let look = |stored: Value, within: f64| {
+            let Tally { differ, most, .. } = differences(&stored, &recomputed, within);
             (differ, most)
         };
         let with = |path: &str, value: Value| {
-            let mut said = again.clone();
-            *said.pointer_mut(path).expect(path) = value;
-            said
+            let mut stored = recomputed.clone();
+            *stored.pointer_mut(path).expect(path) = value;
+            stored
         };
         assert_eq!(look(with("/retune", json!("1")), 0.0), (0, 0.0));
         assert_eq!(look(with("/a/0", json!(0.5)), 0.0), (1, 0.5));

@@ -4,13 +4,13 @@ use retune_optim::{Limit, Limits, PerLimit};
 use retune_study::short;
 use serde::Serialize;
 
-/// Which limits are broken, where the study has any.
+/// The limits that are broken by the design or near it.
 #[derive(Clone, Debug, Serialize)]
 pub struct Kept {
     /// The limits that the design itself breaks.
     broken: Vec<Excess>,
-    /// Of each limit that is broken near the design (by a neighbour, with 1 % of one parameter, or on the finer band), the place
-    /// that breaks it most.
+    /// For each limit broken near the design (by a neighbour, with 1 % of one parameter, or on the finer band), the case that breaks it
+    /// most.
     broken_near: Vec<Excess>,
     neighbours: usize,
 }
@@ -22,7 +22,7 @@ pub struct Excess {
     allowed: f64,
     reached: f64,
     over_percent: f64,
-    /// Where, in words; nothing for the design itself.
+    /// The place in words; empty for the design itself.
     #[serde(skip_serializing_if = "String::is_empty")]
     at: String,
 }
@@ -35,7 +35,7 @@ pub struct Near {
 }
 
 impl Kept {
-    /// None where there is no limit. `own` are the largest values of the design itself.
+    /// None if the study has no limit. `own` holds the largest values of the design itself.
     pub fn new(limits: &Limits, own: &PerLimit<f64>, near: &[Near]) -> Option<Self> {
         if limits.is_empty() {
             return None;
@@ -89,8 +89,8 @@ impl Excess {
 }
 
 fn words(excesses: &[Excess], say: impl Fn(&Excess) -> String) -> Option<String> {
-    let said: Vec<String> = excesses.iter().map(say).collect();
-    (!said.is_empty()).then(|| said.join("; "))
+    let texts: Vec<String> = excesses.iter().map(say).collect();
+    (!texts.is_empty()).then(|| texts.join("; "))
 }
 
 #[cfg(test)]

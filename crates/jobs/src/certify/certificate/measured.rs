@@ -1,4 +1,4 @@
-//! The measurements that a certificate is made from.
+//! The measurements that a certificate rests on.
 
 use super::limits::Kept;
 use super::motions::{Margin, Motions};
@@ -9,7 +9,7 @@ use serde::Serialize;
 
 /// Refinement of the sampled bands for `finer`.
 pub const FINER: usize = 4;
-/// The quantiles of the neighbours between which their width is measured.
+/// The quantiles of the neighbours that bound their width.
 const WITHIN: [f64; 2] = [0.05, 0.95];
 
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -34,7 +34,7 @@ pub struct Run {
 #[derive(Clone, Debug, Serialize)]
 pub struct Motion {
     pub regime: String,
-    /// The same in words.
+    /// The regime in words.
     #[serde(skip)]
     pub sentence: String,
     /// Whether it is chaotic, became periodic through chaos, or shows no period.
@@ -54,7 +54,7 @@ pub struct Sensitivity {
     pub value: f64,
     /// Slope, the change for 1 % more of the parameter.
     pub slope_per_percent: f64,
-    /// The largest value within 1 % of it, and where; null if a design there cannot be run.
+    /// The largest value within 1 % of the parameter, and its error; null if a design there cannot be run.
     pub worst: f64,
     pub worst_at_percent: f64,
 }
@@ -71,26 +71,26 @@ pub struct Neighbourhood {
     pub high: f64,
 }
 
-/// All measurements of a design that a certificate is made from.
+/// All measurements of a design that a certificate rests on.
 #[derive(Clone, Debug, Serialize)]
 pub struct Measured {
     /// The limits at the design and near it, where the study has any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limits: Option<Kept>,
-    /// Whether the damper can strike: no other motion is chaotic.
+    /// Whether the damper has walls: without them no motion is chaotic.
     #[serde(skip)]
     pub has_walls: bool,
-    /// The run with the largest value that the value is made of.
+    /// The run with the largest value of those behind the value.
     pub worst_run: WorstRun,
     pub convergence: Vec<Run>,
-    /// The objective with four times the samples of its bands and ranges, where it has any that are sampled.
+    /// The objective with four times the samples of its bands and ranges, if it has sampled ones.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub finer: Option<f64>,
     pub motion: Motion,
     /// Every motion that was found, from rest and from other starts, where the damper can strike and the force has a period.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motions: Option<Motions>,
-    /// How far the force and the parameters may be off before another motion has 5 % more.
+    /// How far the force and the parameters can change before another motion has 5 % more.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub margin: Option<Margin>,
     pub sensitivity: Vec<Sensitivity>,
@@ -102,14 +102,15 @@ impl Run {
         self.value.value.is_finite()
     }
 
-    /// Difference to the worst run of the study's own method.
+    /// Difference to the worst run by the study's method.
     pub fn error(&self, worst: &WorstRun) -> f64 {
         (self.value.value - worst.value.value).abs()
     }
 }
 
 impl Motion {
-    /// A motion that has no periods to classify it by: a free decay, what a pulse or a record leaves, or a random one, as `regime` and `sentence` say.
+    /// A motion without a period to classify it by, as `regime` and `sentence` say: a free decay, the response to a pulse or record, or a
+    /// random motion.
     pub fn without_period(regime: &str, sentence: &str) -> Self {
         Self {
             regime: regime.to_owned(),

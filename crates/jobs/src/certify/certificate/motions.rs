@@ -1,4 +1,4 @@
-//! The motions that a certificate knows of beside those from rest.
+//! The motions of a certificate other than those from rest.
 
 use crate::amount::{Amount, measured};
 use retune_dynamics::periodic::{Largest, Share};
@@ -6,20 +6,20 @@ use retune_model::{Measure, Parameter};
 use retune_study::{counted, rounded, short};
 use serde::Serialize;
 
-/// The share of starts, and the probability, for which it is said how wide a motion may be that is missed.
+/// The share of starts ending on a motion, and the probability of missing it, for which the width of a missed motion is reported.
 pub const SHARE: f64 = 0.3;
 pub const MISSED: f64 = 0.01;
 
-/// Every motion of the design that was found over the band, from rest and from other starts.
+/// All motions of the design found over the band, from rest and from other starts.
 #[derive(Clone, Debug, Serialize)]
 pub struct Motions {
-    /// The band, rad/s, and the stiffness of the structure, N/m, for which the largest value is most above that of the runs from rest.
+    /// The band, rad/s, and the stiffness of the structure, N/m, with the highest ratio of the largest value to that of the runs from rest.
     pub from: f64,
     pub to: f64,
     pub k1: f64,
-    /// All stiffnesses at which motions were looked for.
+    /// All stiffnesses at which motions were searched for.
     pub k1_of: Vec<f64>,
-    /// Whether the objective has an ensemble: its members were not looked at from other starts.
+    /// Whether the objective has an ensemble, whose members were not run from other starts.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub members_not_looked_at: bool,
     /// Frequencies at which runs were started from rest, and other starts over the band.
@@ -27,7 +27,7 @@ pub struct Motions {
     pub starts: usize,
     /// A motion on which 30 % of the starts end is missed with a probability below 1 % if it is wider than this, rad/s.
     pub width_missed: f64,
-    /// The value of the runs from rest that it is compared with.
+    /// The value of the runs from rest, for comparison.
     #[serde(skip)]
     pub from_rest: f64,
     /// The share of the band over which a stable periodic motion is known.
@@ -44,10 +44,10 @@ pub struct Other {
     #[serde(flatten)]
     pub value: Amount,
     pub omega: f64,
-    /// Where it is told on its own, N/m.
+    /// The stiffness, N/m, where it differs from motion to motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub k1: Option<f64>,
-    /// `[x1, v1, x2, v2]` of it at a crest of the force, to run it again from.
+    /// Its state `[x1, v1, x2, v2]` at a crest of the force, to reproduce it.
     pub state: [f64; 4],
     /// Periods of the force after which it repeats; null where it does not.
     pub periods: Option<usize>,
@@ -62,7 +62,7 @@ pub struct Other {
 pub struct Reached {
     /// Whether a run from rest leads to it, or to its branch elsewhere in the band.
     pub from_rest: bool,
-    /// How many starts end on it or on its branch, of those that were made where that is stable.
+    /// Number of starts that end on it or on its branch, of those in the range where it is stable.
     pub ends: usize,
     pub starts: usize,
 }
@@ -104,8 +104,8 @@ impl Other {
         format!("{} at omega = {} rad/s{k1} ({kind})", measured(value.value, value.quantity), short(*omega))
     }
 
-    /// How to run it again, with a study or results that hold the design.
-    pub fn again(&self, k1: f64) -> String {
+    /// The command that reproduces it, with a study or results that hold the design.
+    pub fn reproduce(&self, k1: f64) -> String {
         let Self { omega, state, .. } = self;
         let state = state.map(short).join(",");
         format!("`retune simulate STUDY --set omega={omega} --set k1={k1} --from {state}` runs it again")
@@ -156,7 +156,7 @@ impl Motions {
         )
     }
 
-    /// What was not looked at, of an objective with an ensemble.
+    /// A note that the members of an ensemble were not run from other starts.
     pub fn members_words(&self) -> &'static str {
         if self.members_not_looked_at {
             "; members of the ensemble not looked at from other starts"
@@ -176,29 +176,29 @@ impl Motions {
         )
     }
 
-    /// The largest value as a share of that of the runs from rest.
+    /// The ratio of the largest value to that of the runs from rest.
     pub fn ratio(&self) -> f64 {
         self.largest.as_ref().map_or(0.0, |one| one.value.value / self.from_rest)
     }
 }
 
-/// The margins of a design. Forces are multiples of its own.
+/// The margins of a design. Forces are multiples of the design's force.
 #[derive(Clone, Debug, Serialize)]
 pub struct Margin {
-    /// The least margin of the force of a robust design.
+    /// The force margin required of a robust design.
     pub needed_force: f64,
-    /// The forces at which motions were looked for, beside its own.
+    /// The forces at which motions were searched for, besides the design's force.
     pub forces: Vec<f64>,
-    /// The force up to which none was found.
+    /// The largest force at which no such motion was found.
     pub safe_to: f64,
     /// The motion that begins there; null where none was found up to the largest of the forces.
     pub other: Option<Other>,
-    /// The least relative error of a parameter of a robust design, %.
+    /// The parameter error that a robust design must tolerate, %.
     pub needed_percent: f64,
-    /// What the forces are multiples of; none of what is given in time.
+    /// The parameter that the forces are multiples of; none for a forcing given in time.
     #[serde(skip)]
     pub amplitude: Option<Parameter>,
-    /// The parameters whose errors of that size bring such a motion, of those that were found at more force.
+    /// The parameters for which an error of that size brings a motion that was found at more force.
     pub parameters: Vec<ParameterError>,
 }
 
@@ -212,7 +212,7 @@ pub struct ParameterError {
 }
 
 impl Margin {
-    /// Whether it is less than a robust design has.
+    /// Whether it is less than a robust design needs.
     pub fn is_short(&self) -> bool {
         self.safe_to < self.needed_force || !self.parameters.is_empty()
     }
@@ -235,7 +235,7 @@ impl Margin {
     }
 }
 
-/// A multiple to four decimals, rounded down: less is safe, too.
+/// A multiple to four decimals, rounded down to the safe side.
 fn percent_down(multiple: f64) -> String {
     short((1e4 * multiple).floor() / 1e4)
 }

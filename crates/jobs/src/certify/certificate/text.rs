@@ -6,7 +6,7 @@ use crate::amount::Amount;
 use retune_study::{rounded, short};
 
 impl Certificate {
-    /// The verdict with the error bar; on lines of their own what other records and other walls do.
+    /// The verdict with the error bar, then lines for other records and other walls.
     pub(crate) fn verdict_words(&self) -> String {
         let records = self.records.iter().map(|records| format!("\nRecords: {}", records.words()));
         let contacts = self.walls.iter().map(|walls| format!("\nContacts: {}", walls.words()));
@@ -26,7 +26,7 @@ impl Certificate {
     }
 }
 
-/// A number to ten decimals, a small one to as many significant digits.
+/// A number to ten decimals, or to ten significant digits if it is below 1.
 fn all_digits(value: f64) -> String {
     let small = value.abs() < 1.0 && value != 0.0;
     let decimals = if small { (9.0 - value.abs().log10().floor()) as usize } else { 10 };
@@ -42,20 +42,20 @@ impl std::fmt::Display for Certificate {
         let predictable = if judged.predictable { "predictable" } else { "not predictable" };
         let Amount { quantity, value, .. } = *value;
         let (name, unit) = (quantity.name(), quantity.unit());
-        let said = |value: f64| or_none(value, quantity);
-        writeln!(f, "{name:<14}{}, {predictable}: {}", said(value), self.compared())?;
+        let value_text = |value: f64| or_none(value, quantity);
+        writeln!(f, "{name:<14}{}, {predictable}: {}", value_text(value), self.compared())?;
         let WorstRun { value, omega, k1, phase } = worst_run;
         let phase = if *phase == 0.0 { String::new() } else { format!(", phase {} rad", short(*phase)) };
         let omega = if *omega > 0.0 { format!("omega = {} rad/s, ", short(*omega)) } else { String::new() };
         let k1 = short(*k1);
-        writeln!(f, "worst run     {} at {omega}k1 = {k1} N/m{phase}", said(value.value))?;
+        writeln!(f, "worst run     {} at {omega}k1 = {k1} N/m{phase}", value_text(value.value))?;
         for Run { method, rtol, value } in &measured.convergence {
             let (method, value) = (format!("{} {rtol:e}", method.name()), value.value);
             let digits =
                 if value.is_finite() { format!("{} {unit}", all_digits(value)) } else { NONE.to_owned() };
             writeln!(f, "  {method:<14}{digits}")?;
         }
-        if let Some(finer) = measured.finer.map(said) {
+        if let Some(finer) = measured.finer.map(value_text) {
             writeln!(f, "samples       the value is a lower bound; {finer} with {FINER} times the samples")?;
         }
         let Motion { regime, exponent, exponent_error, contacts_per_period: [a, b], confidence, .. } = motion;
@@ -64,7 +64,7 @@ impl std::fmt::Display for Certificate {
             writeln!(f, "motions       {}", motions.words())?;
             writeln!(f, "              {}", motions.missed())?;
             if let Some(other) = motions.largest.as_ref().filter(|other| !other.is_from_rest()) {
-                writeln!(f, "              {}", other.again(motions.k1))?;
+                writeln!(f, "              {}", other.reproduce(motions.k1))?;
             }
         }
         if let Some(margin) = &measured.margin {
@@ -87,10 +87,10 @@ impl std::fmt::Display for Certificate {
             let sign = if *slope_per_percent > 0.0 { "+" } else { "" };
             let slope =
                 if known { format!("{sign}{}", rounded(*slope_per_percent, 4)) } else { NONE.to_owned() };
-            writeln!(f, "  {parameter:<12}{slope:<25}{} at {worst_at_percent:+} %", said(*worst))?;
+            writeln!(f, "  {parameter:<12}{slope:<25}{} at {worst_at_percent:+} %", value_text(*worst))?;
         }
         let Neighbourhood { members, errors, low, median, high } = neighbourhood;
-        let (errors, median, range) = (100.0 * errors, said(*median), between(*low, *high, quantity));
+        let (errors, median, range) = (100.0 * errors, value_text(*median), between(*low, *high, quantity));
         writeln!(
             f,
             "neighbours    {members} within {errors} %: 90 % of them have {range}, the median {median}"

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 /// Largest error bar of a predictable value, as a share of it.
 const PREDICTABLE: f64 = 1e-3;
-/// Width of the neighbours' values, as a share of that of the design, above which it is wide; an error bar as wide counts as much.
+/// Width of the neighbours' values, or size of the error bar, as a share of the design's value, above which it counts as wide.
 const WIDE: f64 = 0.05;
 /// Growth within 1 % of any one parameter above which an optimum is sensitive.
 const SENSITIVE: f64 = 0.1;
@@ -56,7 +56,7 @@ pub struct Judged {
 }
 
 impl Measured {
-    /// What they say of a design with this value.
+    /// The verdict on a design with this value.
     pub fn judged(&self, value: Amount) -> Judged {
         let finished = self.convergence.iter().filter(|run| run.is_finished());
         let error_bar = finished.map(|run| run.error(&self.worst_run)).fold(0.0, f64::max);
@@ -71,7 +71,7 @@ fn is_predictable(error_bar: f64, value: f64) -> bool {
     error_bar <= PREDICTABLE * value
 }
 
-/// The verdict on a design with this value ± `error_bar`; none where it breaks a limit. With its words.
+/// The verdict on a design with this value ± `error_bar`, and its words; no verdict where it breaks a limit.
 fn judge(value: Amount, error_bar: f64, predictable: bool, measured: &Measured) -> (Option<Verdict>, String) {
     let limits = measured.limits.as_ref();
     if let Some(broken) = limits.and_then(|limits| limits.broken()) {
@@ -88,38 +88,38 @@ fn judge(value: Amount, error_bar: f64, predictable: bool, measured: &Measured) 
     }
 }
 
-/// Something that a robust design does not have.
+/// A finding against a robust verdict.
 struct Finding {
     verdict: Verdict,
-    /// In words, where it is the first.
+    /// The words if it is the first finding.
     alone: String,
-    /// In words, behind others.
+    /// The words if it follows others.
     beside: String,
 }
 
-/// The verdict on the value, whatever the limits: that of the gravest finding, in words that name them all.
+/// The verdict on the value, whatever the limits: that of the gravest finding, with words on all findings.
 fn judge_value(own: Amount, error_bar: f64, predictable: bool, all: &Measured) -> (Verdict, String) {
     let Amount { quantity, value, .. } = own;
     let worst = all.sensitivity.iter().max_by(|a, b| a.worst.total_cmp(&b.worst));
-    let said = worst.map_or(String::new(), |worst| off_by(worst, quantity));
+    let worst_case = worst.map_or(String::new(), |worst| off_by(worst, quantity));
     let findings = [
         wide_finding(own, error_bar, predictable, all),
-        worst.and_then(|worst| sensitive_finding(value, worst, &said)),
+        worst.and_then(|worst| sensitive_finding(value, worst, &worst_case)),
         finer_finding(own, all),
-        motion_finding(all, &said),
-        margin_finding(all, &said),
+        motion_finding(all, &worst_case),
+        margin_finding(all, &worst_case),
     ];
     let mut findings = findings.into_iter().flatten();
     let Some(Finding { verdict, alone, .. }) = findings.next() else {
-        return (Verdict::Robust, robust_words(all, &said));
+        return (Verdict::Robust, robust_words(all, &worst_case));
     };
     let words = findings.fold(alone, |words, Finding { beside, .. }| format!("{words}; {beside}"));
     (verdict, words)
 }
 
-/// Whether a difference is small beside the design's own value. Not a number is no evidence of anything small.
-fn small(difference: f64, own: f64) -> bool {
-    difference <= WIDE * own
+/// Whether a difference is small compared with the design's value; NaN is not small.
+fn small(difference: f64, value: f64) -> bool {
+    difference <= WIDE * value
 }
 
 /// The values of the design's neighbours in words.
@@ -127,14 +127,14 @@ fn near(Neighbourhood { low, high, errors, .. }: &Neighbourhood, quantity: Measu
     format!("designs within {} % of it have {}", 100.0 * errors, between(*low, *high, quantity))
 }
 
-/// What an error of one parameter does, in words.
+/// The effect of an error of one parameter, in words.
 fn off_by(Sensitivity { parameter, worst, worst_at_percent, .. }: &Sensitivity, quantity: Measure) -> String {
     let gives =
         if worst.is_finite() { format!("gives {}", measured(*worst, quantity)) } else { NO_VALUE.to_owned() };
     format!("{parameter} off by {worst_at_percent:+} % {gives}")
 }
 
-/// Neighbours, or methods, whose values lie far apart.
+/// Finds neighbours or methods whose values lie far apart.
 fn wide_finding(own: Amount, error_bar: f64, predictable: bool, all: &Measured) -> Option<Finding> {
     let Amount { quantity, value, .. } = own;
     let width = all.neighbourhood.width();
@@ -157,19 +157,23 @@ fn wide_finding(own: Amount, error_bar: f64, predictable: bool, all: &Measured) 
     Some(Finding { verdict, alone, beside: near })
 }
 
-/// A parameter whose error of 1 % raises the value much, or leaves none.
-fn sensitive_finding(own: f64, Sensitivity { worst, .. }: &Sensitivity, said: &str) -> Option<Finding> {
+/// Finds a parameter whose error of 1 % raises the value much or makes it impossible to compute.
+fn sensitive_finding(
+    value: f64,
+    Sensitivity { worst, .. }: &Sensitivity,
+    worst_case: &str,
+) -> Option<Finding> {
     let beside = if worst.is_infinite() {
-        said.to_owned()
-    } else if *worst > (1.0 + SENSITIVE) * own {
-        format!("{said}, {} times as much", short(worst / own))
+        worst_case.to_owned()
+    } else if *worst > (1.0 + SENSITIVE) * value {
+        format!("{worst_case}, {} times as much", short(worst / value))
     } else {
         return None;
     };
     Some(Finding { verdict: Verdict::Sensitive, alone: format!("sensitive: {beside}"), beside })
 }
 
-/// A peak that the samples of the study miss.
+/// Finds a peak that the samples of the study miss.
 fn finer_finding(own: Amount, all: &Measured) -> Option<Finding> {
     let Amount { quantity, value, .. } = own;
     let finer = all.finer.filter(|finer| !small(finer - value, value))?;
@@ -182,53 +186,53 @@ fn finer_finding(own: Amount, all: &Measured) -> Option<Finding> {
     })
 }
 
-/// Another motion that has more under the design's own force.
-fn motion_finding(all: &Measured, said: &str) -> Option<Finding> {
+/// Finds another motion with a larger value at the design's force.
+fn motion_finding(all: &Measured, worst_case: &str) -> Option<Finding> {
     let motions = all.motions.as_ref()?;
     let other = motions.largest.as_ref().filter(|_| motions.ratio() > 1.0 + WIDE)?;
     let motion = other.words();
     let (alone, beside) = if other.is_from_rest() {
         let beside = format!("runs from rest between its samples, or longer ones, lead to {motion}");
-        (format!("robust on the runs of the study only: {said}; but {beside}"), beside)
+        (format!("robust on the runs of the study only: {worst_case}; but {beside}"), beside)
     } else {
         let beside = format!("a motion has {motion}; {}", other.reached());
-        (format!("robust from rest only: {said}; but {beside}"), beside)
+        (format!("robust from rest only: {worst_case}; but {beside}"), beside)
     };
     Some(Finding { verdict: Verdict::FromRest, alone, beside })
 }
 
-/// Another motion that has more under a little more force, or with a small error of a parameter.
-fn margin_finding(all: &Measured, said: &str) -> Option<Finding> {
+/// Finds another motion with a larger value at a slightly larger force, or with a small error of a parameter.
+fn margin_finding(all: &Measured, worst_case: &str) -> Option<Finding> {
     let margin = all.margin.as_ref().filter(|margin| margin.is_short())?;
     let beside = margin.words();
     Some(Finding {
         verdict: Verdict::Edge,
-        alone: format!("on the edge of another motion: {beside}; from rest, {said}"),
+        alone: format!("on the edge of another motion: {beside}; from rest, {worst_case}"),
         beside,
     })
 }
 
-/// What is said of a design without any finding.
-fn robust_words(all: &Measured, said: &str) -> String {
+/// The words for a design without any finding.
+fn robust_words(all: &Measured, worst_case: &str) -> String {
     let Some(motions) = &all.motions else {
-        return format!("robust: at worst {said}; other starts not looked at");
+        return format!("robust: at worst {worst_case}; other starts not looked at");
     };
     let margin = all.margin.as_ref().map_or(String::new(), |margin| format!("; {}", margin.words()));
     let (starts, members) = (motions.starts, motions.members_words());
-    format!("robust: at worst {said}; none of {starts} starts leads to 5 % more{margin}{members}")
+    format!("robust: at worst {worst_case}; none of {starts} starts leads to 5 % more{margin}{members}")
 }
 
-/// What is said of a design that cannot be computed.
+/// The predicate for a design that cannot be computed.
 const NO_VALUE: &str = "has no value";
-/// What stands in the place of its value.
+/// The text in place of its value.
 pub(super) const NONE: &str = "no value";
 
-/// A value in words; one that is not finite is of a design that cannot be computed.
+/// A value in words; not finite means that the design cannot be computed.
 pub fn or_none(value: f64, quantity: Measure) -> String {
     if value.is_finite() { measured(value, quantity) } else { NONE.to_owned() }
 }
 
-/// A range of values in words; one that is infinite is of designs that cannot be computed.
+/// A range of values in words; an infinite end means that some designs cannot be computed.
 pub(super) fn between(low: f64, high: f64, quantity: Measure) -> String {
     match [low, high].map(f64::is_finite) {
         [true, true] => format!("{} to {}", short(low), measured(high, quantity)),
@@ -237,7 +241,8 @@ pub(super) fn between(low: f64, high: f64, quantity: Measure) -> String {
     }
 }
 
-/// The rule in words; `limits` says whether the study has limits, `walls` whether the damper has: no other is chaotic.
+/// The rule in words; `limits` tells whether the study has limits, `walls` whether the damper has walls, without which no motion is
+/// chaotic.
 pub fn rule(quantity: Measure, (limits, walls): (bool, bool), Margins { force, errors }: Margins) -> String {
     let name = quantity.name();
     let chaotic = if walls {

@@ -10,11 +10,11 @@ use retune_model::Parameter;
 use retune_study::{counted, frequency, rounded, short};
 use std::path::Path;
 
-/// Columns of a terminal that lines are broken for.
+/// Width of the terminal that lines are wrapped for.
 const COLUMNS: usize = 80;
-/// A space at which no line is broken.
+/// A no-break space.
 const HELD: &str = "\u{a0}";
-/// A hyphen at which none is broken.
+/// A no-break hyphen.
 const HYPHEN: &str = "\u{2011}";
 
 impl Optimum {
@@ -100,7 +100,7 @@ impl Optimum {
         )
     }
 
-    /// The digits of a parameter that tell; four of one that was not varied.
+    /// The significant digits of a parameter; four if it was not varied.
     fn digits(&self, variable: Parameter) -> usize {
         self.valleys.iter().find(|valley| valley.variable == variable).map_or(4, Valley::digits)
     }
@@ -118,7 +118,7 @@ impl Optimum {
         format!("{}: {sum}{} {}{at}", self.damper_type, self.value.quantity.name(), self.value.words())
     }
 
-    /// The structure without a damper, and with the damper that the study began with.
+    /// The value without a damper and with the study's damper, in words.
     fn compared(&self) -> String {
         let times = |other: Amount| match other.value.is_finite() {
             true if self.value.value == 0.0 => other.words(),
@@ -138,14 +138,14 @@ impl Optimum {
     }
 }
 
-/// Paragraphs in lines of at most [`COLUMNS`] columns; the first may be indented.
+/// Wraps paragraphs to at most [`COLUMNS`] columns; the first may be indented.
 fn wrapped(text: &str, indent: &str) -> String {
-    let own = &text[..text.len() - text.trim_start().len()];
-    let further = format!("{own}{indent}       ");
+    let indentation = &text[..text.len() - text.trim_start().len()];
+    let further = format!("{indentation}{indent}       ");
     // The name of a file stays whole.
     let held = |word: &str| if word.contains('/') { word.replace('-', HYPHEN) } else { word.to_owned() };
     let paragraph = |(i, text): (usize, &str)| {
-        let first = if i == 0 { own } else { &further };
+        let first = if i == 0 { indentation } else { &further };
         let options = textwrap::Options::new(COLUMNS).initial_indent(first).subsequent_indent(&further);
         let words: Vec<String> = text.split(' ').map(held).collect();
         textwrap::fill(&words.join(" "), options).replace(HELD, " ").replace(HYPHEN, "-")
@@ -154,7 +154,7 @@ fn wrapped(text: &str, indent: &str) -> String {
 }
 
 impl LimitNote {
-    /// How near the limits are, where they are kept.
+    /// How close the values are to the limits; none if a limit is broken.
     fn kept(&self) -> Option<String> {
         let Self { allowed, feasible, active, evaluations, infeasible, .. } = self;
         let words = self.reached.iter().filter_map(|(limit, reached)| {

@@ -9,7 +9,7 @@ use retune_optim::{Bounds, Evaluation, FrequencyBand, Limit, Limits, Objective, 
 use retune_study::{Search, Study};
 use serde::{Serialize, Serializer};
 
-/// The objective, and the ω at which E1max of the best design is reached, rad/s.
+/// The objective, and the ω at which the best design has its value, rad/s.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Goal {
     #[serde(flatten)]
@@ -21,7 +21,7 @@ pub(crate) struct Goal {
     /// The restitution at which it is reached, if the objective has several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) worst_restitution: Option<f64>,
-    /// Of the runs of the best design, those that should have settled and did not; their E1max is that of the window.
+    /// Runs of the best design that should have settled and did not; their E1max is that of the window.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) unsettled: Option<u64>,
     /// Number of runs behind its value; a steady response in closed form counts as one.
@@ -32,7 +32,7 @@ pub(crate) struct Goal {
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct LimitNote {
     pub(crate) allowed: Limits,
-    /// The largest value, in any run of the objective, of what has a limit, SI units.
+    /// The largest value of each limited quantity in any run of the objective, SI units.
     #[serde(flatten, serialize_with = "by_name")]
     pub(crate) reached: Vec<(Limit, f64)>,
     pub(crate) feasible: bool,

@@ -39,7 +39,7 @@ pub fn section(findings: &Findings, compared: &Compared, flags: &[Flag]) -> Sect
     ("answer", "The answer", vec![Block::Elements(body)])
 }
 
-/// What the value is taken over, in words.
+/// The scope of the objective, in words.
 pub fn objective(findings: &Findings) -> String {
     let objective = findings.study.objective();
     let omega = findings.study.scene.forcing.frequency.get();
@@ -119,7 +119,7 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
             @if let Some(walls) = &certificate.walls { (fact("Contacts", &contacts(walls, energy, quantity), walls.words())) }
             @if let Some(needs) = &findings.optimum.needs {
                 @let say = |name: &str, measure: Measure, what: &str| fact(name, &needs.damper.sized(measure), &format!(
-                    "{what}, from rest on{}{}{}", placed(", at ", needs.damper.omega(measure)), own(needs, measure, &window), others(needs, measure)
+                    "{what}, from rest on{}{}{}", placed(", at ", needs.damper.omega(measure)), in_objective(needs, measure, &window), alternatives(needs, measure)
                 ));
                 (say("Stroke", Measure::Stroke, "largest spring deflection |x2 − x1 − D|"))
                 (say("Contact force", Measure::ContactForce, "largest force on a wall"))
@@ -132,24 +132,24 @@ fn facts(findings: &Findings, beside: &Compared) -> Markup {
     }
 }
 
-/// What other restitutions make of the value, in short.
-fn contacts(walls: &Walls, own: f64, quantity: Measure) -> String {
+/// The worst value with other restitutions, in short.
+fn contacts(walls: &Walls, nominal: f64, quantity: Measure) -> String {
     walls.worst().map_or("no value with a loss".to_owned(), |(e, worst)| {
-        let percent = 100.0 * (worst.value / own - 1.0);
+        let percent = 100.0 * (worst.value / nominal - 1.0);
         let sign = if percent > 0.0 { "+" } else { "" };
         let change = digits(percent, 3);
         format!("{} at e = {e} ({sign}{change} %)", amount(worst.value, quantity))
     })
 }
 
-/// What the part of the response has that the objective looks at, where that is less.
-fn own(needs: &Needs, measure: Measure, window: &str) -> String {
-    let own = needs.damper.own(measure);
-    own.map_or(String::new(), |value| format!("; {} in the objective ({window})", sized(measure, value)))
+/// The value in the part of the response that the objective covers, where that is smaller.
+fn in_objective(needs: &Needs, measure: Measure, window: &str) -> String {
+    let value = needs.damper.own(measure);
+    value.map_or(String::new(), |value| format!("; {} in the objective ({window})", sized(measure, value)))
 }
 
-/// The same without a damper and with the best linear one.
-fn others(needs: &Needs, measure: Measure) -> String {
+/// The value without a damper and with the best TMD.
+fn alternatives(needs: &Needs, measure: Measure) -> String {
     let linear =
         needs.linear.as_ref().map(|linear| format!("; {} with the best TMD", linear.needs.sized(measure)));
     let damper = measure.is_of_damper();
@@ -167,9 +167,9 @@ fn parameters(findings: &Findings) -> Markup {
     shown.extend(Parameter::columns(varied).into_iter().filter(|one| *one != Parameter::M2));
     for parameter in shown {
         let Some(value) = parameter.of_damper(&damper) else { continue };
-        let own = four(parameter.of(&findings.study.scene).unwrap_or(f64::NAN));
+        let before = four(parameter.of(&findings.study.scene).unwrap_or(f64::NAN));
         let tuned = if varied.contains(&parameter) { "tuned" } else { "given" };
-        table.row([parameter.symbol(), parameter.words(), &four(value), parameter.unit(), &own, tuned]);
+        table.row([parameter.symbol(), parameter.words(), &four(value), parameter.unit(), &before, tuned]);
     }
     table.markup()
 }
@@ -189,7 +189,7 @@ fn limits(findings: &Findings) -> Option<Table> {
     Some(table)
 }
 
-/// What to do next: what the flags ask for, else the checks that a design deserves before it is built.
+/// The next steps: the changes that flags ask for, and checks before the design is built.
 fn next(findings: &Findings, flags: &[Flag]) -> Markup {
     let changes: Vec<&str> = flags.iter().filter_map(|flag| flag.change.as_deref()).collect();
     let (omega, k1) = (findings.worst_omega(), findings.worst.primary.stiffness);

@@ -3,7 +3,7 @@
 use super::findings::Findings;
 use super::numbers::{amount, digits, four};
 use crate::amount::label;
-use crate::tune::log::worth;
+use crate::tune::log::value_words;
 use crate::tune::optimum::stop_words;
 use crate::tune::pictures::label as picture_label;
 use crate::tune::refine::Descended;
@@ -29,7 +29,7 @@ pub fn section(findings: &Findings, results: &Directory) -> Section {
                 (counted(winner.func_count, "evaluation"))
             } @else { "The design was found from " (findings.refined.beyond(findings.refined.winner).unwrap_or_default()) }
             @if let Some(Descended { from, evaluations }) = findings.refined.best().descent {
-                ", by a descent with derivatives from " (worth(from, findings.quantity())) " in " (counted(evaluations, "evaluation"))
+                ", by a descent with derivatives from " (value_words(from, findings.quantity())) " in " (counted(evaluations, "evaluation"))
             }
             ". "
             @if failures.count == 0 { "Every design could be computed." }
@@ -50,7 +50,7 @@ fn stages(findings: &Findings) -> Table {
     let head = "stage | evaluations | broke a limit | could not be computed | best";
     let mut table = Table::new("Stages of the search", &format!("{head} {}", quantity.name()));
     let mut row = |stage: &str, counts: Counts, failed: u64, best: f64| {
-        table.row(cells![stage, counts.evaluations, counts.infeasible, failed, worth(best, quantity)]);
+        table.row(cells![stage, counts.evaluations, counts.infeasible, failed, value_words(best, quantity)]);
     };
     if let Some(surf) = findings.surf {
         row("grid", surf.counts, surf.failures.count, surf.least);
@@ -111,7 +111,7 @@ fn basins(findings: &Findings) -> Option<Table> {
     Some(table)
 }
 
-/// Bytes of maps that a page holds; of more it holds links alone.
+/// Most bytes of maps that a page embeds; beyond it the page only links to them.
 const MOST: usize = 220_000;
 
 pub fn place(findings: &Findings, files: &[String], results: &Directory) -> Section {

@@ -1,4 +1,4 @@
-//! What a page is made of: the study, the stages of its search, and what came out of them.
+//! The contents of a page: the study, the stages of its search, and their results.
 
 use crate::certify::Measured;
 use crate::tune::band::{self, Rows};
@@ -11,7 +11,7 @@ use retune_optim::{Evaluation, Goal, Limits, Unusable};
 use retune_solver::Response;
 use retune_study::{Search, Study};
 
-/// What a page is made of.
+/// The contents of a page.
 pub(crate) struct Findings<'a> {
     pub study: &'a Study,
     pub search: &'a Search,
@@ -22,7 +22,7 @@ pub(crate) struct Findings<'a> {
     pub evaluation: &'a Evaluation,
     /// The scene of the study with the tuned damper.
     pub tuned: Scene,
-    /// The same at its worst frequency and stiffness.
+    /// The tuned scene at its worst frequency and stiffness.
     pub worst: Scene,
     pub response: &'a Response,
     /// The quantity over the band of the objective, if it has one.
@@ -31,14 +31,14 @@ pub(crate) struct Findings<'a> {
     pub on_grid: usize,
 }
 
-/// What the tuned damper is compared with: the value of the objective, or why there is none.
+/// The alternatives to the tuned damper: the value of the objective, or why there is none.
 pub(super) struct Compared {
     pub none: Result<Evaluation, Unusable>,
     pub study: Result<Evaluation, Unusable>,
 }
 
 impl Findings<'_> {
-    /// What the search made small.
+    /// The minimised quantity.
     pub fn quantity(&self) -> Measure {
         self.study.quantity()
     }
@@ -51,7 +51,7 @@ impl Findings<'_> {
         band::compared(self.study, self.tuned)
     }
 
-    /// Computes what the tuned damper is compared with, by the same objective and regardless of limits.
+    /// Evaluates the objective, regardless of limits, without a damper and with the study's damper.
     pub(super) fn compared(&self) -> Compared {
         let goal = Goal { limits: Limits::default(), ..self.study.goal() };
         let settings = self.study.solver.settings();

@@ -89,7 +89,7 @@ fn words(findings: &Findings) -> Table {
     table
 }
 
-/// The same run by other methods.
+/// The worst run by other methods.
 fn methods(findings: &Findings) -> Table {
     let quantity = findings.quantity();
     let caption = format!("{} of the worst run by other methods and tolerances", quantity.name());
@@ -173,7 +173,7 @@ fn picture(findings: &Findings, window: Window, rows: &[Sample]) -> Drawing {
     })
 }
 
-/// The place of the damper in its cavity, with the walls that are near.
+/// The position of the damper in its cavity, with the walls nearby.
 fn relative(findings: &Findings, rows: &[Sample]) -> (String, Axis, Vec<Layer>) {
     let place = |row: &Sample| 1e3 * (row.state[2] - row.state[0]);
     let (low, high) = rows

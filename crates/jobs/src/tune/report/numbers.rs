@@ -30,7 +30,7 @@ pub fn millimetres(metres: f64) -> String {
     format!("{} mm", four(1e3 * metres))
 }
 
-/// A value beside another: how many times less or more it is, and the change in percent.
+/// A value compared with another: how many times less or more it is, and the change in percent.
 pub fn compared(value: f64, other: f64) -> Option<String> {
     let times = other / value;
     if !(times.is_finite() && times > 0.0) {
@@ -39,7 +39,7 @@ pub fn compared(value: f64, other: f64) -> Option<String> {
     let percent = 100.0 * (value / other - 1.0);
     let (times, more) = if times >= 1.0 { (times, "less") } else { (1.0 / times, "more") };
     let how_many = how_many(times);
-    // Of a change by thousands the percentage says nothing.
+    // For a change by a factor of thousands a percentage is useless.
     if times >= 1e3 {
         return Some(format!("{how_many} times {more}"));
     }

@@ -1,10 +1,10 @@
-//! The response over frequency: how far the tuning reaches.
+//! The response over frequency: how broad the tuning is.
 
 use super::findings::{Compared, Findings};
 use super::numbers::{HERTZ, amount, four, frequency};
 use crate::amount::label;
 use crate::summary::baseline;
-use crate::tune::band::{at, energy, first};
+use crate::tune::band::{at, first, term_value};
 use maud::{Markup, html};
 use rayon::prelude::*;
 use retune_model::{Measure, Scene};
@@ -17,7 +17,7 @@ use retune_report::{
 };
 use retune_solver::{Ask, extremes};
 
-/// The curves and their looks.
+/// The names and strokes of the curves.
 fn lines(findings: &Findings) -> [(&'static str, Stroke); 3] {
     [
         ("no damper", Stroke::new(BLACK, 1.1, Dash::Short)),
@@ -34,12 +34,12 @@ struct Curve<'a> {
     label: String,
     unit: &'static str,
     values: &'a [Vec<f64>; 3],
-    /// The largest value that the objective covers, and before it its frequency, rad/s.
+    /// The frequency, rad/s, of the largest value that the objective covers, and that value.
     worst: [f64; 2],
 }
 
 impl<'a> Curve<'a> {
-    /// What the search made small.
+    /// The minimised quantity.
     fn objective(findings: &Findings, curves: &'a Curves) -> Self {
         let quantity = findings.quantity();
         Self {
@@ -133,7 +133,7 @@ fn picture(findings: &Findings, curves: &Curves, curve: Curve<'_>) -> Drawing {
     legend.push((Key::Mark(mark), format!("{what}: {} {unit} at {} rad/s", four(worst), four(omega))));
     let chart =
         Chart::of(Axis::linear("ω, rad/s", range).with_second("frequency, Hz", HERTZ), y, layers, 210.0);
-    let said: Vec<String> =
+    let peaks: Vec<String> =
         lines.iter().zip(top).map(|((line, _), top)| format!("{line} {} {unit}", four(top))).collect();
     drawing(&Sheet {
         description: format!(
@@ -141,7 +141,7 @@ fn picture(findings: &Findings, curves: &Curves, curve: Curve<'_>) -> Drawing {
             four(range.0),
             four(range.1),
             if log { "logarithmic" } else { "linear" },
-            said.join(", ")
+            peaks.join(", ")
         ),
         width: Width::Page,
         legend,
@@ -151,51 +151,51 @@ fn picture(findings: &Findings, curves: &Curves, curve: Curve<'_>) -> Drawing {
 
 /// Half the width of the band about a single frequency, as a share of the natural frequency.
 pub const ABOUT: f64 = 0.2;
-/// Frequencies of such a band, of which as many again lie ever closer to the single one.
+/// Number of equal steps over the band.
 const POINTS: i32 = 100;
-/// How often the distance to the single frequency is halved.
+/// Number of further frequencies on each side, each at half the distance of the one before from the single frequency.
 const CLOSER: i32 = 10;
 
 /// Curves of the three scenes of [`Findings::scenes`]. Values that are not finite are missing.
 pub struct Curves {
     /// rad/s, ascending.
     pub omega: Vec<f64>,
-    /// What the search made small, in its unit.
+    /// The minimised quantity, in its unit.
     pub value: [Vec<f64>; 3],
     /// The largest displacement |x1| of the structure in the window of a run, mm.
     pub displacement: [Vec<f64>; 3],
-    /// Whether the objective looks at all of these frequencies, or at a single one only.
+    /// Whether the objective covers all these frequencies, or a single one.
     pub is_objective: bool,
 }
 
 impl Curves {
     pub fn new(findings: &Findings) -> Self {
-        let own = findings.band.as_ref().filter(|rows| !rows.is_empty());
-        let (omega, value) = match own {
+        let band = findings.band.as_ref().filter(|rows| !rows.is_empty());
+        let (omega, value) = match band {
             Some(rows) => {
                 let value = [0, 1, 2].map(|scene| rows.iter().map(|row| row.1[scene]).collect());
                 (rows.iter().map(|row| row.0).collect(), value)
             }
-            None => about(findings),
+            None => around_single(findings),
         };
         let displacement = displacements(findings, &omega);
-        Self { omega, value, displacement, is_objective: own.is_some() }
+        Self { omega, value, displacement, is_objective: band.is_some() }
     }
 
-    /// The largest of a curve, where there is one.
+    /// The largest finite value of a curve; 0 without any.
     pub fn largest(curve: &[f64]) -> f64 {
         curve.iter().copied().filter(|value| value.is_finite()).fold(0.0, f64::max)
     }
 }
 
-fn about(findings: &Findings) -> (Vec<f64>, [Vec<f64>; 3]) {
+fn around_single(findings: &Findings) -> (Vec<f64>, [Vec<f64>; 3]) {
     let objective = findings.study.objective();
     let term = first(&objective).cloned().unwrap_or_default();
     // One run a frequency, of the nominal scene.
     let single = Objective { omega: None, ensemble: None, k1: None, restitution: None, ..term };
     let omega = frequencies(findings);
     let value = |(scene, omega): (Scene, f64)| {
-        at(omega, scene).map_or(f64::NAN, |scene| energy(findings.study, scene, &single))
+        at(omega, scene).map_or(f64::NAN, |scene| term_value(findings.study, scene, &single))
     };
     let scenes = findings.scenes();
     let asked: Vec<(Scene, f64)> =

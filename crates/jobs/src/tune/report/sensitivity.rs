@@ -22,12 +22,12 @@ pub fn section(findings: &Findings) -> Section {
     let quantity = findings.quantity();
     let name = quantity.name();
     let article = if name.starts_with(['E', 'a', 'x']) { "an" } else { "a" };
-    let said = |value: f64| said(value, quantity);
+    let value_text = |value: f64| value_text(value, quantity);
     let body = html! {
         p {
             "Of " (near.members) " designs whose k1, k2, c2, D and C are off by at most " (digits(100.0 * near.errors, 3))
-            " %, nine in ten have " (article) " " (name) " from " (said(near.low)) " to " (said(near.high)) ", and half have less than "
-            (said(near.median)) ". The design itself has " (said(findings.optimum.certificate.value.value)) "."
+            " %, nine in ten have " (article) " " (name) " from " (value_text(near.low)) " to " (value_text(near.high)) ", and half have less than "
+            (value_text(near.median)) ". The design itself has " (value_text(findings.optimum.certificate.value.value)) "."
         }
         (figure(&picture(findings), html! {
             "The largest " (name) " with one parameter off by at most 1 %, and the neighbours' spread. " (link(crate::certify::FILE))
@@ -38,8 +38,8 @@ pub fn section(findings: &Findings) -> Section {
     ("sensitivity", "Sensitivity to small errors", vec![Block::Elements(body)])
 }
 
-/// A value; one that is infinite is of a design that cannot be computed.
-fn said(value: f64, quantity: Measure) -> String {
+/// A value in words; infinite means that the design cannot be computed.
+fn value_text(value: f64, quantity: Measure) -> String {
     if value.is_finite() { amount(value, quantity) } else { "no value (it cannot be computed)".to_owned() }
 }
 
@@ -117,13 +117,13 @@ fn picture(findings: &Findings) -> Drawing {
         layers,
         ROW * (last as f64 + 1.4) + 30.0,
     );
-    let said: Vec<String> =
+    let entries: Vec<String> =
         bars.iter().map(|one| format!("{} {}", one.parameter, amount(one.worst, quantity))).collect();
     drawing(&Sheet {
         description: format!(
             "A bar for each parameter from the design's {name}, {}, to the largest: {}. Neighbours: {} to {}.",
             amount(own, quantity),
-            said.join(", "),
+            entries.join(", "),
             four(near.low),
             amount(near.high, quantity)
         ),

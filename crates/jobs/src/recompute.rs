@@ -1,25 +1,25 @@
-//! Files of results, computed again: of a table the numbers of a row, of any other file the whole. Each job knows how for its own files;
-//! `verify` reads, draws rows and compares.
+//! Recomputes files of results: tables row by row, any other file as a whole. Each job has the functions for its own files; `verify` reads
+//! the files, samples rows and compares.
 
 use crate::Error;
 use retune_model::Design;
 use serde_json::Value;
 use std::path::Path;
 
-/// How the rows of a table are computed again, from the directory of the results and the name of the file.
+/// Gives the function that recomputes rows of a table, from the directory of the results and the name of the file.
 pub type Rows = fn(&Path, &str) -> Result<Source, Error>;
 
-/// How a file is made again as a whole.
-pub type Whole = fn(&Path, &str) -> Result<Made, Error>;
+/// Recomputes a file as a whole.
+pub type Whole = fn(&Path, &str) -> Result<Recomputed, Error>;
 
-/// Names of columns, and their numbers computed again.
+/// Names of columns with their recomputed numbers.
 pub type Numbers = Vec<(String, f64)>;
 
-/// The function that computes a row again.
+/// The functions that recompute a row.
 pub struct Source {
-    /// Whether a row has numbers that can be computed.
+    /// Whether a row has numbers that can be recomputed.
     pub applies: Box<dyn Fn(Row) -> bool + Sync>,
-    /// The numbers of a row, from what says which row it is; none where no command writes such a row.
+    /// The recomputed numbers of a row, from the fields that identify it; none where no command writes such a row.
     pub row: Box<dyn Fn(Row) -> Option<Numbers> + Sync>,
 }
 
@@ -28,17 +28,17 @@ impl Source {
         Self { applies: Box::new(|_| true), row: Box::new(row) }
     }
 
-    /// The same of those rows that have such numbers.
+    /// Restricts the source to the rows for which `applies` holds.
     pub fn only(self, applies: impl Fn(Row) -> bool + Sync + 'static) -> Self {
         Self { applies: Box::new(applies), ..self }
     }
 }
 
-pub enum Made {
-    /// A part of it, in words; the fields of `again` are compared with those of `said`.
-    Of { what: &'static str, said: Value, again: Value },
-    /// It cannot be: the reason.
-    Not(String),
+pub enum Recomputed {
+    /// The part named by `what`: the fields of `recomputed` are compared with those of `stored`.
+    Part { what: &'static str, stored: Value, recomputed: Value },
+    /// Why it cannot be recomputed.
+    Failed(String),
 }
 
 #[derive(Clone, Copy)]
@@ -64,13 +64,13 @@ impl<'a> Row<'a> {
         self.text(name).parse().unwrap_or(f64::NAN)
     }
 
-    /// Its design; none where a field is no number, or none of a damper.
+    /// The design in the row; none where a field is not a number or not valid for a damper.
     pub fn design(self) -> Option<Design> {
         Design::new(|variable| self.number(variable.symbol())).ok()
     }
 }
 
-/// All rows of a table that `visit` is to see, with their number.
+/// Calls `visit` with the number of every row of a table and the row.
 pub fn each_row(path: &Path, mut visit: impl FnMut(usize, Row)) -> Result<(), Error> {
     let refuse =
         |error: csv::Error| retune_store::Error::Input { path: path.to_owned(), source: error.into() };
@@ -94,7 +94,7 @@ pub fn json(place: &Path, name: &str) -> Result<Value, Error> {
     serde_json::from_str(&text(place, name)?).map_err(|error| broken(place, name, error.to_string()))
 }
 
-/// The design in a JSON object; none where a number is missing or none of a damper.
+/// The design in a JSON object; none where a number is missing or not valid for a damper.
 pub fn design(of: &Value) -> Option<Design> {
     Design::new(|variable| of[variable.symbol()].as_f64().unwrap_or(f64::NAN)).ok()
 }

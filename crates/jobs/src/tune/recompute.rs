@@ -1,11 +1,11 @@
-//! The files of a search, computed again: the rows of its grid and its refinements, its band, the design that it found.
+//! Recomputes the files of a search: the rows of its grid and its refinements, its band, the design that it found.
 
 use super::band;
 use super::log::{OPTIMUM, SEARCHED};
 use super::objective::{coarse, objective, searched};
-use crate::again::{Made, Row, Source, design, json};
 use crate::certify::certify;
 use crate::needs::Needs;
+use crate::recompute::{Recomputed, Row, Source, design, json};
 use crate::summary::Summary;
 use crate::{Error, resolved};
 use retune_model::{NonNegative, Scene};
@@ -27,7 +27,7 @@ pub(super) fn search(place: &Path, _name: &str) -> Result<Source, Error> {
     values(objective_of(&study, searched)?, study, f64::INFINITY)
 }
 
-/// The minimised value, `up_to` if it is above that; of a basin nothing where its design breaks a limit.
+/// The minimised value, at most `up_to`; empty for a basin whose design breaks a limit.
 fn values(objective: DesignObjective, study: Study, up_to: f64) -> Result<Source, Error> {
     Ok(Source::new(move |row: Row| {
         let name = objective.goal().objective.quantity().name();
@@ -42,7 +42,7 @@ fn values(objective: DesignObjective, study: Study, up_to: f64) -> Result<Source
     }))
 }
 
-/// The curves over the band: without damper, with that of the study, with the best.
+/// The curves over the band: without a damper, with the study's damper, with the tuned damper.
 pub(super) fn band(place: &Path, _name: &str) -> Result<Source, Error> {
     let study = study_of(place)?;
     let tuned = tuned(place, &study)?;
@@ -51,36 +51,36 @@ pub(super) fn band(place: &Path, _name: &str) -> Result<Source, Error> {
         let scenes = band::compared(&study, tuned?);
         let number = |mut scene: Scene| {
             scene.forcing.frequency = omega;
-            band::at_its_own(&study, scene)
+            band::at_own_frequency(&study, scene)
         };
         Some(band::columns(study.quantity()).into_iter().zip(scenes.map(number)).collect())
     }))
 }
 
-/// The design that was found, its run, what it needs, its certificate.
-pub(super) fn optimum(place: &Path, name: &str) -> Result<Made, Error> {
+/// The tuned design, its run, its needs and its certificate.
+pub(super) fn optimum(place: &Path, name: &str) -> Result<Recomputed, Error> {
     let study = study_of(place)?;
     let Some(tuned) = tuned(place, &study)? else {
-        return Ok(Made::Not("its design cannot be run".to_owned()));
+        return Ok(Recomputed::Failed("its design cannot be run".to_owned()));
     };
     let objective = objective_of(&study, objective)?;
-    let said = json(place, name)?;
+    let stored = json(place, name)?;
     let found = match objective.evaluate(&tuned, f64::INFINITY) {
-        Err(error) => return Ok(Made::Not(format!("its design cannot be run: {error}"))),
+        Err(error) => return Ok(Recomputed::Failed(format!("its design cannot be run: {error}"))),
         Ok(found) => found,
     };
-    let mut again = run(&study, &objective, tuned, &found)?;
-    if let (Some(_), Ok(search)) = (said.get("needs"), study.search()) {
-        again["needs"] = json!(Needs::new(&study, &search, &tuned, found.value));
+    let mut recomputed = run(&study, &objective, tuned, &found)?;
+    if let (Some(_), Ok(search)) = (stored.get("needs"), study.search()) {
+        recomputed["needs"] = json!(Needs::new(&study, &search, &tuned, found.value));
     }
-    if said.get("certificate").is_some() {
+    if stored.get("certificate").is_some() {
         let certificate = certify(&Study { scene: tuned, ..study })?;
-        again["certificate"] = json!(certificate.short());
+        recomputed["certificate"] = json!(certificate.short());
     }
-    Ok(Made::Of { what: "its design", said, again })
+    Ok(Recomputed::Part { what: "its design", stored, recomputed })
 }
 
-/// What `optimum.json` says of its design without a look around it.
+/// The fields of `optimum.json` that follow from the design alone, without its neighbourhood.
 fn run(
     study: &Study,
     objective: &DesignObjective,
@@ -90,34 +90,35 @@ fn run(
     let scene = found.worst_run(tuned, objective.goal());
     let response = retune_solver::simulate(&scene, study.window.window(), &study.solver.settings())?;
     let name = study.quantity().name();
-    let mut again = json!({
+    let mut recomputed = json!({
         name: found.value,
         format!("{name}_none"): study.energy_without_damper(),
         format!("{name}_study"): study.energy(&study.scene),
         "simulation": Summary::new(study, scene, &response) });
     if !objective.goal().limits.is_empty() {
-        again["limits"] = json!({ "violation": found.violation, "feasible": found.violation == 0.0 });
+        recomputed["limits"] = json!({ "violation": found.violation, "feasible": found.violation == 0.0 });
         for limit in objective.goal().limits.set() {
-            again["limits"][limit.name()] = json!(found.reached.get(limit));
+            recomputed["limits"][limit.name()] = json!(found.reached.get(limit));
         }
     }
-    Ok(again)
+    Ok(recomputed)
 }
 
-/// The certificate: of the design of `optimum.json`, of its own where a search left no other, or of the study's.
-pub(super) fn certificate(place: &Path, name: &str) -> Result<Made, Error> {
+/// The certificate of the design in `optimum.json`; else of the design in the certificate itself, if there are other files of a search;
+/// else of the study's damper.
+pub(super) fn certificate(place: &Path, name: &str) -> Result<Recomputed, Error> {
     let study = study_of(place)?;
-    let said = json(place, name)?;
+    let stored = json(place, name)?;
     let scene = if place.join(OPTIMUM).exists() {
         tuned(place, &study)?
     } else if SEARCHED.iter().any(|name| place.join(name).exists()) {
-        design(&said["design"]).and_then(|found| study.scene_at(&found))
+        design(&stored["design"]).and_then(|found| study.scene_at(&found))
     } else {
         Some(study.scene)
     };
     match scene {
-        Some(scene) => Ok(crate::certify::again(&Study { scene, ..study }, said)),
-        None => Ok(Made::Not("its design cannot be run".to_owned())),
+        Some(scene) => Ok(crate::certify::recompute(&Study { scene, ..study }, stored)),
+        None => Ok(Recomputed::Failed("its design cannot be run".to_owned())),
     }
 }
 
@@ -125,7 +126,7 @@ fn study_of(place: &Path) -> Result<Study, Error> {
     Ok(retune_study::read(&place.join(resolved::ONE))?)
 }
 
-/// The scene with the design that was found; none where there is none, or it cannot be run.
+/// The scene with the tuned design; none without `optimum.json`, or where the design cannot be run.
 fn tuned(place: &Path, study: &Study) -> Result<Option<Scene>, Error> {
     if !place.join(OPTIMUM).exists() {
         return Ok(None);

@@ -1,14 +1,14 @@
-//! The tables of `retention`, computed again: the designs, E1max along k1, the retention ranges, smaller forces.
+//! Recomputes the tables of `retention`: the designs, E1max along k1, the retention ranges, smaller forces.
 
 use super::force::{amplitude, under};
 use super::trade::{ENDS, Point};
 use super::tuned::{BANDS, CURVES, DESIGNS, FORCES, RANGES, Tuned, Tuning, bare, energy, label, on_samples};
 use crate::Error;
-use crate::again::{Numbers, Row, Source, each_row};
+use crate::recompute::{Numbers, Row, Source, each_row};
 use crate::resolved::Resolved;
 use std::path::Path;
 
-pub(super) fn again(place: &Path, name: &str) -> Result<Source, Error> {
+pub(super) fn rows(place: &Path, name: &str) -> Result<Source, Error> {
     let resolved = Resolved::read(place)?;
     let k1 = resolved.plan["k1"].as_array().map(|all| all.iter().filter_map(|k1| k1.as_f64()).collect());
     let k1: Vec<f64> = k1.unwrap_or_default();
@@ -27,7 +27,7 @@ pub(super) fn again(place: &Path, name: &str) -> Result<Source, Error> {
         damper.anew.extend(k1.iter().filter(|k1| label(**k1) == tuning).map(|k1| (*k1, at)));
     })?;
     if name == RANGES {
-        dampers = dampers.into_iter().map(Tuned::judged).collect::<Result<_, _>>()?;
+        dampers = dampers.into_iter().map(Tuned::with_thresholds).collect::<Result<_, _>>()?;
     }
     let row: fn(&[Tuned], Row) -> Option<Numbers> = match name {
         DESIGNS => return Ok(Source::new(move |row| Some(vec![e1_max(design(&dampers, &k1, row)?)]))),
@@ -43,12 +43,12 @@ fn e1_max(found: Option<f64>) -> (String, f64) {
     ("E1max".to_owned(), found.unwrap_or(f64::INFINITY))
 }
 
-/// The damper of a row, with its number.
+/// The damper of a row, with its index.
 fn damper<'a>(dampers: &'a [Tuned], row: Row) -> Option<(usize, &'a Tuned)> {
     dampers.iter().enumerate().find(|(_, damper)| damper.name == row.text("damper"))
 }
 
-/// E1max of a design for what it was tuned for.
+/// E1max of a design under the conditions it was tuned for.
 fn design(dampers: &[Tuned], k1: &[f64], row: Row) -> Option<Option<f64>> {
     let ((_, damper), at) = (damper(dampers, row)?, row.design()?);
     Some(damper.energy_as_tuned(row.text("tuning"), &at, k1))
@@ -63,12 +63,12 @@ fn point(dampers: &[Tuned], row: Row) -> Option<Option<f64>> {
     }
     let (_, damper) = damper(dampers, row)?;
     let kept = damper.kept.iter().find(|(kept, _)| kept.name() == tuning).map(|(_, at)| *at);
-    let anew = damper.anew.iter().find(|(own, _)| tuning == Tuning::Anew.name() && *own == k1);
+    let anew = damper.anew.iter().find(|(tuned_for, _)| tuning == Tuning::Anew.name() && *tuned_for == k1);
     let at = kept.or(anew.map(|(_, at)| *at))?;
     Some(energy(damper.studies.get(band)?, damper.samples, &at, k1))
 }
 
-/// E1max with the nominal design and without a damper under a force.
+/// E1max under a force, with the nominal design and without a damper.
 fn forced(dampers: &[Tuned], row: Row) -> Option<Numbers> {
     let (_, damper) = damper(dampers, row)?;
     let at = damper.of(Tuning::Nominal)?;
@@ -77,7 +77,7 @@ fn forced(dampers: &[Tuned], row: Row) -> Option<Numbers> {
     Some(["E1max", "none"].map(str::to_owned).into_iter().zip(found).collect())
 }
 
-/// E1max and both ends of the ranges of a design, where it has one.
+/// E1max and the ends of the ranges of a design.
 fn range(dampers: &[Tuned], row: Row) -> Option<Numbers> {
     let (damper, at) = (damper(dampers, row)?, row.design()?);
     on_samples(damper.1.study(), damper.1.samples, &at)?;
