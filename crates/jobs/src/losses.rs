@@ -52,7 +52,8 @@ pub fn losses(request: &Request, watch: &dyn Observer) -> Result<Done<Losses>, E
         }
         let lossless = designs[0].2; // the first restitution is 1
         watch.log("\nall restitutions at once")?;
-        let hedged = searches.tune(&study, "all")?.damper.design;
+        let known: Vec<Design> = designs.iter().map(|(.., design)| *design).collect();
+        let hedged = searches.tune_from_known(&study, "all", &known)?.damper.design;
         for (tuning, design) in [untuned(&study)?, (Tuning::Lossless, lossless), (Tuning::Hedged, hedged)] {
             designs.extend(restitutions.iter().map(|e| (tuning, *e, design)));
         }

@@ -31,7 +31,8 @@ use crate::resolved;
 use crate::searches::Searches;
 use crate::summary::TunedDamper;
 use crate::{Error, Observer, Request};
-use retune_study::{self as study, Setting};
+use retune_model::Positive;
+use retune_study::{self as study, Setting, SettingError};
 use serde_json::json;
 use tuned::{CURVES, DESIGNS, FORCES, RANGES};
 
@@ -70,6 +71,8 @@ pub fn retention(
 ) -> Result<Done<Retained>, Error> {
     let (options, rows) = study::read_rows(&request.study)?;
     for setting in stiffnesses {
+        let refused = |source| SettingError::OutOfRange { name: setting.what(), source };
+        Positive::new(setting.value()).map_err(refused)?;
         rows.iter().try_for_each(|row| row.study.with(std::slice::from_ref(setting)).map(drop))?;
     }
     let mut others: Vec<f64> = stiffnesses.iter().map(Setting::value).collect();

@@ -5,8 +5,12 @@ use crate::rows::in_a_stage;
 use crate::tune::ends::{Ends, ends};
 use crate::tune::{Optimum, optimize};
 use crate::{Error, Observer};
+use retune_model::Design;
 use retune_store::{Directory, Journal, Order};
-use retune_study::Study;
+use retune_study::{Study, clipped};
+
+/// A known design is better if it is lower by more than this share.
+const GAIN: f64 = 1e-4;
 
 /// The searches of a job. Each has its own directory, log and certificate, and can be resumed until the whole job is finished.
 pub struct Searches<'a> {
@@ -38,6 +42,34 @@ impl<'a> Searches<'a> {
         self.results.push(results);
         self.infeasible = self.infeasible.take().or(optimum.check_limits().err());
         Ok(optimum)
+    }
+
+    /// Runs the search of a study. Where one of some `known` designs is better than its end, the search continues from the best of them, with
+    /// results in `place-further/`.
+    pub fn tune_from_known(
+        &mut self,
+        study: &Study,
+        place: &str,
+        known: &[Design],
+    ) -> Result<Optimum, Error> {
+        let optimum = self.tune(study, place)?;
+        let (goal, settings) = (study.goal(), study.solver.settings());
+        let value = |design: &Design| {
+            let found = goal.evaluate(&study.scene_at(design)?, &settings, f64::INFINITY).ok()?;
+            Some((found.ranked, *design))
+        };
+        let end = value(&optimum.damper.design).map_or(f64::INFINITY, |(ranked, _)| ranked);
+        let best = known.iter().filter_map(value).min_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((_, better)) = best.filter(|(ranked, _)| *ranked < (1.0 - GAIN) * end) else {
+            return Ok(optimum);
+        };
+        let mut further = study.clone();
+        if let Some(optimize) = &mut further.optimize {
+            (optimize.global, optimize.surf) = (None, None);
+            optimize.starts = vec![clipped(&better, optimize)];
+        }
+        self.watch.log("a design that was found before is better: the search continues from it")?;
+        self.tune(&further, &format!("{place}-further"))
     }
 
     /// Runs the searches of several studies in parallel, each under its own name, without reporting their progress; returns the designs

@@ -187,7 +187,8 @@ pub(super) fn explain(path: Option<&str>, error: &serde_json::Error) -> String {
     }
     match quoted(&message).split_first() {
         Some((name, allowed)) if message.starts_with("unknown field") => {
-            let parent = field.and_then(parent_of).map(|parent| format!("{parent}: ")).unwrap_or_default();
+            let parent = field.and_then(|field| parent_of(field, name));
+            let parent = parent.map(|parent| format!("{parent}: ")).unwrap_or_default();
             format!("{parent}unknown field `{name}`{}", suggestion(name, allowed))
         }
         Some((name, allowed)) if message.starts_with("unknown variant") => {
@@ -220,8 +221,13 @@ fn prefixed(field: Option<&str>, problem: &str) -> String {
     field.map_or_else(|| problem.to_owned(), |field| format!("{field}: {problem}"))
 }
 
-fn parent_of(path: &str) -> Option<&str> {
-    path.rsplit_once('.').map(|(parent, _)| parent)
+/// The object that has an entry `name`, from a path that may end with that entry; none for the whole file.
+fn parent_of<'a>(path: &'a str, name: &str) -> Option<&'a str> {
+    match path.rsplit_once('.') {
+        Some((parent, last)) if last == name => Some(parent),
+        None if path == name => None,
+        _ => Some(path),
+    }
 }
 
 /// The words between backticks.

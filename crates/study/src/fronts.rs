@@ -3,10 +3,11 @@
 use super::built_in::read_plan_text;
 use super::file::Kind;
 use super::file::{StudyError, expect, parse};
-use super::format::Study;
+use super::format::{Optimize, Study};
 use super::objective::{MOST_SAMPLES, check_quantity};
 use super::read::named;
 use super::rule::Rule;
+use super::search::clipped;
 use retune_model::{Design, Measure, PerVariable, Positive};
 use retune_optim::{Limit, Parameter};
 use schemars::JsonSchema;
@@ -187,8 +188,15 @@ pub fn bounded(
     match sweep.limit().zip(Positive::new(value).ok()) {
         Some((limit, most)) => optimize.limits = optimize.limits.with(limit, most),
         None => {
-            let lower = optimize.bounds.get(Parameter::K2).map_or(0.0, |(lower, _)| lower);
-            optimize.bounds.set(Parameter::K2, Some((lower, Some(value))));
+            optimize.bounds.set(Parameter::K2, Some((least_k2(optimize), Some(value))));
+            // A search that begins at the damper of the study begins at its nearest within the bound.
+            let stiffer = study.scene.damper.filter(|damper| damper.stiffness.get() > value);
+            if let Some(damper) = stiffer
+                && optimize.starts.is_empty()
+                && optimize.global.is_none()
+            {
+                optimize.starts.push(clipped(&Design::of_varied(&damper, &optimize.vary), optimize));
+            }
             for start in &mut optimize.starts {
                 start.set(Parameter::K2, start.get(Parameter::K2).map(|k2| k2.min(value)));
             }
@@ -200,6 +208,11 @@ pub fn bounded(
     optimize.starts.extend(starts);
     study.check()?;
     Ok(study)
+}
+
+/// The smallest k2 that a search may take, N/m.
+fn least_k2(optimize: &Optimize) -> f64 {
+    optimize.bounds.get(Parameter::K2).map_or(0.0, |(lower, _)| lower)
 }
 
 /// A design from `said`, completed from the damper of the study; the error is a value that it cannot have.
@@ -253,6 +266,12 @@ pub fn read_fronts(path: &Path) -> Result<FrontsPlan, StudyError> {
         let study = named(&study_file)?;
         check_quantity(&study)
             .map_err(|rule| StudyError::Rule { file: study_file.display().to_string(), rule })?;
+        let least = study.optimize.as_ref().map_or(0.0, least_k2);
+        if let Some(place) = plan.said.k2.iter().position(|most| most.get() <= least) {
+            let (field, value) = (format!("k2[{place}]"), plan.said.k2[place].get());
+            let value = format!("{value} N/m, with a smallest k2 of {least} N/m in {}", study_file.display());
+            return Err(refuse(&field, value, "a bound above the smallest k2 of each study"));
+        }
         for sweep in Sweep::ALL {
             for value in plan.values(sweep) {
                 bounded(&study, sweep, value, Vec::new())

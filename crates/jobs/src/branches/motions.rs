@@ -37,7 +37,9 @@ pub struct Motions {
 /// Where the first isola begins.
 #[derive(Clone, Debug)]
 pub struct Margin {
-    /// The amplitude of the scene's forcing, in its unit.
+    /// What the size of the forcing is.
+    pub amplitude: Parameter,
+    /// That of the scene, in its unit.
     pub own: f64,
     /// The birth of the isola as the amplitude rises; none up to the largest that was tried.
     pub birth: Option<Onset>,
@@ -137,7 +139,7 @@ pub fn margin(motions: &Motions) -> Result<Option<Margin>, Error> {
     let amplitude = amplitude.filter(|(_, own)| *own > 0.0 && plan.parameter == Parameter::Omega);
     let Some((amplitude, own)) = amplitude else { return Ok(None) };
     if motions.others().next().is_some() {
-        return Ok(Some(Margin { own, birth: None, tried: own }));
+        return Ok(Some(Margin { amplitude, own, birth: None, tried: own }));
     }
     let first_birth = |force: f64| -> Result<Option<Onset>, Error> {
         let scene = amplitude.at(motions.study.scene, force).map_err(retune_dynamics::Error::from)?;
@@ -156,15 +158,16 @@ pub fn margin(motions: &Motions) -> Result<Option<Margin>, Error> {
                 None => break,
             }
         }
-        return Ok(Some(Margin { own, birth: Some(born), tried: step * own }));
+        return Ok(Some(Margin { amplitude, own, birth: Some(born), tried: step * own }));
     }
-    Ok(Some(Margin { own, birth: None, tried: STEPS[STEPS.len() - 1] * own }))
+    Ok(Some(Margin { amplitude, own, birth: None, tried: STEPS[STEPS.len() - 1] * own }))
 }
 
 impl Margin {
     /// In words.
     pub fn words(&self) -> String {
-        let Self { own, birth, tried } = self;
+        let Self { amplitude, own, birth, tried } = self;
+        let unit = amplitude.unit();
         match birth {
             None if tried == own => {
                 "A motion that no run from rest leads to, with much more energy, is there at the scene's own force already: it has no margin."
@@ -172,10 +175,10 @@ impl Margin {
             }
             None => {
                 let [times, force] = [tried / own, *tried].map(short);
-                format!("No isola was found up to {times} times the force, {force} N.")
+                format!("No isola was found up to {times} times the force, {force} {unit}.")
             }
             Some(Onset { value, omega, orbit }) => format!(
-                "Up to {} times the force, {} N, no isola was found; with more, one begins at omega = {} rad/s, {} J ({} \
+                "Up to {} times the force, {} {unit}, no isola was found; with more, one begins at omega = {} rad/s, {} J ({} \
                  periods, impacts {}).",
                 rounded(value / own, 6),
                 rounded(*value, 8),

@@ -137,10 +137,10 @@ pub fn summary(motions: &Motions) -> Value {
         "irregular": irregular,
         "branches": branches.collect::<Vec<_>>(),
         "margin": motions.margin.as_ref().map(|margin| json!({
-            "P": margin.own,
+            margin.amplitude.symbol(): margin.own,
             "tried": margin.tried,
             "birth": margin.birth.as_ref().map(|Onset { value, omega, orbit }| json!({
-                "P": value,
+                margin.amplitude.symbol(): value,
                 "omega": omega,
                 "E1max": energy(orbit),
                 "impacts": orbit.seen.impacts,

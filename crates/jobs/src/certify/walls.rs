@@ -190,6 +190,9 @@ impl Walls {
             words += &format!("; {}, the stiffness of both walls", joined(&each.collect::<Vec<_>>(), ", "));
         }
         words += &self.reservations();
+        if self.stiffness.iter().any(|one| one.found.value > (1.0 + GROWTH) * own.value) {
+            words += "; measure the stiffness of the walls before you build it";
+        }
         if self.worst().is_some_and(|(_, worst)| worst.value > (1.0 + GROWTH) * own.value) {
             let law = match Parameter::Restitution.of(&study.scene) {
                 Some(_) => "",

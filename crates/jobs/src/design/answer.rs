@@ -249,6 +249,8 @@ pub(super) fn findings(requirements: &Requirements, compared: &Comparison) -> Ve
         let further = compared.chosen().is_some_and(|chosen| is_lossy(&chosen.study.scene));
         let further = if further { " `retune certify` looks at more starts, and at more force." } else { "" };
         lines.push(format!("How sure: the {name} is {words}.{further}"));
+        let walls = certificate.walls.as_ref();
+        lines.extend(walls.map(|walls| format!("Other walls: {}.", legible(walls.words()))));
     }
     let unsettled = compared.ssvi.as_ref().filter(|ssvi| ssvi.study.unsettled().is_some());
     if let Some(held) = unsettled.and_then(|ssvi| ssvi.study.transient()) {

@@ -5,7 +5,7 @@ use super::requirements::{Constraint, Dampers, Requirements};
 use super::trust::{certified, doubt, first_feasible, is_sensitive, striking, trusted, worst_nearby};
 use super::words::{parameters, question, sized};
 use super::{Formula, ssvi, tmd};
-use crate::certify::Certificate;
+use crate::certify::{Certificate, complete};
 use crate::contacts::Contacts;
 use crate::{Error, Observer};
 use retune_model::{Measure, Parameter, Scene};
@@ -161,7 +161,7 @@ pub(super) fn compare(
     watch.result(&format!("\nTMD{exact}: {name} {has}{kept}, {}", parameters(&tmd)))?;
     let (mut ssvi, mut tried, mut judged) = (None, None, None);
     if requirements.dampers != Dampers::Tmd {
-        watch.result("SSVI NES, from known designs: some seconds (Ctrl-C leaves what stands above)")?;
+        watch.result("SSVI NES, from known designs: seconds, where contacts lose energy minutes (Ctrl-C ends here; the line above holds)")?;
         let strokes = strokes(requirements, &tmd)?;
         let found = ssvi::best(ssvi_study, (&tmd, &strokes), &[], (journal, "ssvi"), watch)?;
         tried = Some(found.tried);
@@ -195,7 +195,9 @@ pub(super) fn compare(
     };
     let lightest = if tmd.feasible { None } else { lightest(requirements, watch)? };
     let certificate = match choice {
-        Some(What::Ssvi) => judged.clone(),
+        Some(What::Ssvi) => {
+            ssvi.as_ref().zip(judged.clone()).map(|(ssvi, judged)| complete(&ssvi.study, judged))
+        }
         Some(_) => Some(certified(&tmd.study)?),
         None => None,
     };

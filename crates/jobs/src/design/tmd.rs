@@ -15,6 +15,8 @@ use std::ops::ControlFlow;
 /// best.
 const TUNINGS: [[f64; 2]; 2] = [[0.05, 5.0], [0.05, 1e4]];
 const TUNINGS_IN_TIME: [[f64; 2]; 2] = [[0.05, 20.0], [0.05, 1e4]];
+/// A dashpot below this share of Den Hartog's counts as none.
+const RESIDUE: f64 = 1e-6;
 /// Number of valleys of the grid in which descents begin.
 const VALLEYS: usize = 3;
 
@@ -94,7 +96,9 @@ pub(super) fn best(study: &Study, formulas: &[Formula]) -> Result<[f64; 2], Erro
             best = Some(simplex(|x, cutoff| whole.value(x, cutoff), &search, &end.x));
         }
     }
-    Ok(best.and_then(|end| <[f64; 2]>::try_from(end.x).ok()).unwrap_or(scales))
+    let [k2, c2] = best.and_then(|end| <[f64; 2]>::try_from(end.x).ok()).unwrap_or(scales);
+    // What a search towards zero leaves is no dashpot to build.
+    Ok([k2, if c2 < RESIDUE * scales[1] { bounds[1].lower.unwrap_or(0.0) } else { c2 }])
 }
 
 /// The end of a simplex search from a start, for shocks and records, where there are no derivatives; the start itself if the search cannot

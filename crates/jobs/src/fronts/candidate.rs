@@ -92,20 +92,23 @@ impl Candidate {
         self.verdict == Verdict::FromRest.name()
     }
 
-    /// Whether it belongs to the same damper and each parameter differs by at most 5 % or 0.01 SI units.
+    /// Whether it belongs to the same damper and each parameter differs by at most 5 %; a gap, which may be zero, by 5 % of the largest gap.
     pub fn is_nearly(&self, other: &Self) -> bool {
+        let gaps = [self, other].map(|design| [Parameter::D, Parameter::C].map(|gap| design.at.get(gap)));
+        let largest_gap = gaps.as_flattened().iter().copied().fold(0.0, f64::max);
         let near = |parameter: Parameter| {
             let [a, b] = [self, other].map(|design| design.at.get(parameter));
             // A gap is NaN where there is no wall, any other parameter where it is the study's.
             let same = if parameter.is_gap() { a.is_nan() && b.is_nan() } else { a.is_nan() || b.is_nan() };
-            same || (a - b).abs() <= (0.05 * a.abs().max(b.abs())).max(0.01)
+            let size = if parameter.is_gap() { largest_gap } else { a.abs().max(b.abs()) };
+            same || (a - b).abs() <= 0.05 * size
         };
         self.damper == other.damper && Parameter::VARIED.into_iter().all(near)
     }
 
     /// Whether it dominates `other`: no worse in E1max, stroke, force and k2, and better in one of them.
     pub fn dominates(&self, other: &Self) -> bool {
-        let all = |design: &Self| [design.e1_max, design.stroke, design.force, design.at.get(Parameter::K2)];
+        let all = |design: &Self| [design.known(), design.stroke, design.force, design.at.get(Parameter::K2)];
         let pairs = || all(self).into_iter().zip(all(other));
         pairs().all(|(own, other)| own <= other) && pairs().any(|(own, other)| own < other)
     }

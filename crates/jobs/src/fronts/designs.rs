@@ -3,7 +3,7 @@
 //! All designs of a damper are evaluated on more samples of the band than in the searches. Each bound gets the best design that keeps it,
 //! whichever search found it, so a looser bound is never worse.
 
-use super::candidate::{Candidate, SAME, Under};
+use super::candidate::{CONTINUED, Candidate, SAME, Under};
 use crate::Error;
 use crate::Observer;
 use crate::certify::{Certificate, certify};
@@ -90,8 +90,13 @@ impl Fronts {
     pub fn front(&self) -> Vec<&Candidate> {
         let dominated = |design: &Candidate| self.designs.iter().any(|other| other.dominates(design));
         let mut front: Vec<&Candidate> = self.designs.iter().filter(|design| !dominated(design)).collect();
-        front.sort_by(|a, b| a.e1_max.total_cmp(&b.e1_max));
-        front.dedup();
+        // Of one design that several searches found, the one with a verdict.
+        let rank = |design: &Candidate| (design.known(), design.damper, design.verdict == CONTINUED);
+        front.sort_by(|a, b| {
+            let [a, b] = [a, b].map(|design| rank(design));
+            a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2)))
+        });
+        front.dedup_by(|a, b| a.damper == b.damper && a.at == b.at);
         front
     }
 
@@ -112,9 +117,9 @@ impl Fronts {
         for (under, design) in rows.filter(|(under, _)| under.damper > 0) {
             let strikes = |design: &&Candidate| design.force > 0.0 && design.verdict != GIVEN;
             let Some(design) = design.filter(strikes) else { continue };
-            let share = self.reference(under).map_or(0.0, |reference| design.e1_max / reference);
+            let share = self.reference(under).map_or(0.0, |reference| design.known() / reference);
             let is_like = |other: &Candidate| {
-                other.damper == design.damper && (other.e1_max / design.e1_max - 1.0).abs() < SAME
+                other.damper == design.damper && (other.known() / design.known() - 1.0).abs() < SAME
             };
             if share < 1.0 - SAME && gains.iter().all(|(.., other)| !is_like(other)) {
                 gains.push((share, under, design));
@@ -134,7 +139,7 @@ impl Fronts {
 
     /// The least E1max of the first damper under a bound, J.
     pub fn reference(&self, under: Under) -> Option<f64> {
-        Some(self.row(Under { damper: 0, ..under })?.e1_max)
+        Some(self.row(Under { damper: 0, ..under })?.known())
     }
 
     /// The parameters that tables have columns for: the paper's, others that a study varies, and those in which a known design differs from

@@ -176,7 +176,7 @@ pub(super) fn answer(fronts: &Fronts) -> Vec<String> {
             "The {} of the study (k2 = {} N/m) has {} J, with a stroke of {} m.",
             fronts.name(given.damper),
             short(given.at.get(Parameter::K2)),
-            joule(given.e1_max),
+            joule(given.known()),
             metre(given.stroke)
         ));
     }
@@ -196,7 +196,7 @@ fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
         rows.map(|(under, design)| (under.bound, design, fronts.reference(under))).collect();
     let gains = rows.iter().filter_map(|(bound, design, reference)| {
         let (design, reference) = ((*design)?, (*reference)?);
-        Some((design.e1_max / reference, bound, design))
+        Some((design.known() / reference, bound, design))
     });
     let gains: Vec<(f64, &f64, &Candidate)> = gains.collect();
     let listed = |bounds: Vec<&f64>| joined(&bounds, ", ");
@@ -204,10 +204,10 @@ fn compared(fronts: &Fronts, sweep: Sweep, damper: usize) -> String {
         Some((gain, bound, design)) if *gain < 1.0 - SAME => {
             let better = gains.iter().filter(|(share, ..)| *share < 1.0 - SAME);
             format!(
-                "{}: the best {name} has {} J, the best {first} {} J. There its advantage is largest; it is better by more than 1 % for {}.",
+                "{}: the best {name} found has {} J, the best {first} {} J. There its advantage is largest; it is better by more than 1 % for {}.",
                 at_most(sweep, bound),
-                joule(design.e1_max),
-                joule(design.e1_max / gain),
+                joule(design.known()),
+                joule(design.known() / gain),
                 at_most(sweep, listed(better.map(|(_, bound, _)| *bound).collect()))
             )
         }
@@ -242,7 +242,7 @@ fn certificate(fronts: &Fronts, Certified { under, design, certificate, .. }: &C
         fronts.name(design.damper),
         at_most(under.sweep, under.bound),
         words(fronts, design),
-        joule(design.e1_max),
+        joule(design.known()),
         fronts.name(0),
         reference.map_or("none".to_owned(), |reference| format!("{} J", joule(reference))),
         lines.join("; "),

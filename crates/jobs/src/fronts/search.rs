@@ -123,7 +123,7 @@ impl Fronts {
             open.sort_by_key(|(at, _)| *at);
             open.dedup_by_key(|(at, _)| *at);
             if open.is_empty() {
-                return Ok(());
+                break;
             }
             let stage = (searches.watch, "best designs, looked at once more");
             let judged = |&(at, under): &(usize, Under)| {
@@ -133,25 +133,59 @@ impl Fronts {
             searches.journal().check()?;
             judged.into_iter().for_each(|(at, design)| self.designs[at] = design);
         }
+        self.check_front(searches)
+    }
+
+    /// Evaluates the designs of the front, and those of the studies, on the finest samples, until all that no other dominates by these are known.
+    fn check_front(&mut self, searches: &Searches) -> Result<(), Error> {
+        let journal = searches.journal();
+        let given = self.given.iter().map(|design| self.checked(design, journal));
+        let given: Vec<Candidate> =
+            given.map(|given| Candidate { needs: self.needs(&given), ..given }).collect();
+        self.given = given;
+        loop {
+            let is_open = |&at: &usize| {
+                let design = &self.designs[at];
+                design.checked.is_none() && !self.designs.iter().any(|other| other.dominates(design))
+            };
+            let open: Vec<usize> = (0..self.designs.len()).filter(is_open).collect();
+            if open.is_empty() {
+                return Ok(());
+            }
+            let checked = |&at: &usize| Ok((at, self.checked(&self.designs[at], journal)));
+            let checked = in_a_stage((searches.watch, "front, on the finest samples"), &open, checked)?;
+            journal.check()?;
+            checked.into_iter().for_each(|(at, design)| self.designs[at] = design);
+        }
+    }
+
+    /// The design with E1max on the finest samples.
+    fn checked(&self, design: &Candidate, journal: &Journal) -> Candidate {
+        let Candidate { damper, at, e1_max, .. } = design;
+        let finest = || {
+            let study = with_samples(&self.plan.dampers[*damper].1, self.plan.check(), at);
+            study.and_then(|study| study.energy(&study.scene)).unwrap_or(f64::INFINITY)
+        };
+        let numbers = Parameter::VARIED.map(|parameter| at.get(parameter));
+        let finest = journal.value(&format!("{damper} checked"), &numbers, f64::INFINITY, finest, |_| ());
+        Candidate { checked: Some(finest.max(*e1_max)), ..design.clone() }
+    }
+
+    /// What a design needs and what the structure does, from rest on.
+    fn needs(&self, design: &Candidate) -> Option<Largest> {
+        let (_, study) = &self.plan.dampers[design.damper];
+        Largest::of(study, &study.scene_at(&design.at)?)
     }
 
     /// The design with E1max on the finest samples; or, if it has that, with the verdict of its certificate.
     fn judged(&self, design: &Candidate, under: Under, journal: &Journal) -> Result<Candidate, Error> {
-        let Candidate { damper, at, e1_max, checked, .. } = design;
-        if checked.is_none() {
-            let finest = || {
-                let study = with_samples(&self.plan.dampers[*damper].1, self.plan.check(), at);
-                study.and_then(|study| study.energy(&study.scene)).unwrap_or(f64::INFINITY)
-            };
-            let numbers = Parameter::VARIED.map(|parameter| at.get(parameter));
-            let finest = journal.value(&format!("{damper} checked"), &numbers, f64::INFINITY, finest, |_| ());
-            let finest = finest.max(*e1_max);
-            return Ok(Candidate { checked: Some(finest), ..design.clone() });
+        if design.checked.is_none() {
+            return Ok(self.checked(design, journal));
         }
         let study = self.bounded(under, Vec::new())?;
-        let scene = study.scene_at(at).unwrap_or(study.scene);
-        let needs = Largest::of(&study, &scene);
+        let scene = study.scene_at(&design.at).unwrap_or(study.scene);
         let certificate = judge(&Study { scene, ..study })?;
+        let needs = self.needs(design);
         let (verdict, reason) = (certificate.verdict(), certificate.reason().to_owned());
         Ok(Candidate { verdict, reason, needs, ..design.clone() })
     }

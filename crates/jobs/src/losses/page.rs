@@ -8,7 +8,7 @@ use retune_report::colour::{BLACK, BLUE, GREEN, ORANGE, PURPLE, VERMILION};
 use retune_report::document::{Block, Document};
 use retune_report::{Axis, Chart, Dash, Drawing, Key, Layer, Mark, Scale, Shape, Sheet, Stroke};
 use retune_store::Directory;
-use retune_study::{design_words, rounded};
+use retune_study::{design_words, joined, rounded};
 
 /// Writes the page and its figures; returns the answer in words.
 pub(super) fn write(losses: &Losses, directory: &Directory) -> Result<String, Error> {
@@ -62,9 +62,15 @@ fn answer(losses: &Losses) -> Vec<String> {
     let most = losses.of(Tuning::Hedged).max_by(|a, b| a.value.total_cmp(&b.value));
     let hedged = most.map(|most| {
         let (words, value, e) = (design_words(&most.design, 4), value(most), most.restitution);
-        format!("One damper for all e ({words}) has at most {value}, at e = {e}.")
+        let tuned: Vec<f64> =
+            losses.study.objective().restitution.into_iter().flatten().map(|e| e.get()).collect();
+        let which = joined(&tuned, ", ");
+        let other = if tuned.contains(&e) { "" } else { ", for which it was not tuned" };
+        format!(
+            "One damper tuned for the worst of e = {which} ({words}) has at most {value}, at e = {e}{other}."
+        )
     });
-    let lossless = from_to(Tuning::Lossless, "A damper tuned as if contacts lost nothing has the worst");
+    let lossless = from_to(Tuning::Lossless, "A damper tuned as if contacts lost nothing");
     let paper = from_to(Tuning::Paper, "The paper's damper");
     let study = from_to(Tuning::Study, "The damper of the study");
     [lossless, anew, hedged, paper, study].into_iter().flatten().collect()

@@ -174,8 +174,9 @@ fn smaller_force(retained: &Retained, shown: &[usize]) -> Option<String> {
     let name = |of: &Forced| retained.name(of.damper);
     let unit = retained.study().and_then(amplitude).map_or("", Parameter::unit);
     let words = retained.forced.iter().filter(|of| shown.contains(&of.damper)).map(|of| {
+        let gaps = if of.proportional { " with D and C in proportion to the force" } else { "" };
         if of.is_constant() {
-            return format!("{} {} under any force", name(of), rounded(of.share(0), 3));
+            return format!("{}{gaps} {} under any force", name(of), rounded(of.share(0), 3));
         }
         let halves = (0..3).map(|half| {
             let step = half * HALF;
@@ -183,7 +184,6 @@ fn smaller_force(retained: &Retained, shown: &[usize]) -> Option<String> {
             // Removes the rounding errors of the powers of two.
             format!("{} at {} {unit}", rounded(of.share(step), 3), short((force * 1e6).round() / 1e6))
         });
-        let gaps = if of.proportional { " with D and C in proportion to the force" } else { "" };
         format!("{}{gaps} {}", name(of), halves.collect::<Vec<_>>().join(", "))
     });
     let words: Vec<String> = words.collect();

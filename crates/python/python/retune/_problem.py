@@ -85,9 +85,9 @@ class Problem(_core.Core):
       given in time.
     - ``window`` (s) is the time in which maxima are taken; every run starts from rest at 0. "settled": from when the slowest transient
       with the walls open has 0.1 % of its start, for 50 periods of the force.
-    - ``vary`` names the tuned parameters, of k2, c2, D, C and m2; ``bounds`` gives each its smallest and largest value.
+    - ``vary`` names the tuned parameters, of k2, c2, D, C, m2 and R; ``bounds`` gives each its smallest and largest value.
     - ``band`` (rad/s) makes the objective the worst over these frequencies, ``samples`` of which are run; ``response`` is "window",
-      "steady" or "settled"; ``quantity`` is what is made small; ``objective`` has the further fields of ``optimize.objective``.
+      "steady", "settled" or "motions"; ``quantity`` is what is made small; ``objective`` has the further fields of ``optimize.objective``.
     - ``limits`` has largest allowed values of quantities, such as ``stroke``, and of ``cavity`` (SI units), and ``from`` (s).
     - ``surf``, ``coarse``, ``global_search``, ``starts``, ``refine`` say how ``retune.optimize`` searches, and ``solver`` how motions are
       integrated, with the fields of study files.
@@ -209,7 +209,7 @@ class Problem(_core.Core):
         """The values of ``n`` designs, the rows of ``X`` (n, d), on all cores, or on ``threads``; the numbers do not depend on that.
 
         Returns columns: ``value`` as of ``problem(x)``, the quantity (``E1max``, J), ``stroke`` (m) and ``contact_force`` (N), NaN where neither
-        the quantity nor a limit asks for them, ``violation``, ``omega_worst`` (rad/s; NaN of a pulse or a record). A row without a value has an infinite ``value`` and NaN elsewhere;
+        the quantity nor a limit asks for them and the response is not steady, ``violation``, ``omega_worst`` (rad/s; NaN of a pulse or a record). A row without a value has an infinite ``value`` and NaN elsewhere;
         ``errors`` has its exception.
         """
         columns, errors = self._batch(X, threads)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import numbers
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any, ClassVar
 
@@ -21,10 +22,12 @@ class Part:
     title: ClassVar[str]
 
     def _in_si(self) -> None:
-        """Texts with a unit become numbers in SI units."""
+        """Texts with a unit become numbers in SI units, and numbers of numpy those of Python."""
         for name, value in list(vars(self).items()):
             if isinstance(value, str):
                 object.__setattr__(self, name, scalar(value, name))
+            elif isinstance(value, numbers.Real) and not isinstance(value, (int, float)):
+                object.__setattr__(self, name, float(value))
 
     def _known(self) -> dict[str, Any]:
         """What is shown, by its symbol."""
