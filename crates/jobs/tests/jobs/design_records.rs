@@ -148,3 +148,19 @@ fn contract_a_shock_and_a_record_are_refused_with_what_to_give() {
         assert!(sentence.contains("asked.json: shock: ") && sentence.contains(words), "{sentence}");
     }
 }
+
+/// The certificate is over every stiffness that the value is over: at a quarter of them a damper was called sensitive, since what one parameter off
+/// gives stood beside a smaller value.
+#[test]
+fn regress_the_certificate_is_over_all_stiffnesses_of_a_record() {
+    let (desk, requirements) =
+        in_a_record(&[("goal", json!("E1max")), ("damper", json!("tmd")), ("k1_error", json!("20 %"))]);
+    make(&desk, &good(requirements), &Silent);
+    let said = desk.read_json("out/design.json");
+    let study = retune_study::read(&desk.path("out/studies-tmd.json")).expect("a study");
+    let certificate = good(retune_jobs::certify::judge(&study));
+    assert_eq!(said["certificate"]["words"], certificate.reason(), "{said}");
+    let value = said["candidates"][1]["in_window"]["E1max"]["value"].as_f64().expect("a number");
+    let certified = json!(certificate)["E1max"].as_f64().expect("a number");
+    assert!((certified / value - 1.0).abs() < 1e-9, "{certified} {value}");
+}

@@ -4,6 +4,7 @@ use crate::{request, resume};
 use retune_jobs::describe;
 use retune_jobs::fronts::fronts;
 use retune_jobs::{Error, Request, Silent};
+use retune_model::Parameter;
 use retune_study::{Rule, StudyError};
 use retune_testkit::desk::{Desk, committed, count_lines, few_starts};
 use retune_testkit::observers::{cut_off_before, good, refused};
@@ -138,6 +139,28 @@ fn contract_a_design_that_is_known_stands_beside_those_that_are_found() {
     // What it leaves out is as in the scene: c2 and D.
     let own = ["12.5", "232", "0.06", "0.5"];
     assert!(front.iter().any(|row| row[0] == "SSVI NES" && row[3..7] == own), "{front:?}");
+    // Each was evaluated on the finest samples, and stands there once.
+    assert!(front.iter().all(|row| !row[2].is_empty()), "{front:?}");
+    let mut designs: Vec<&[String]> = front.iter().map(|row| &row[3..7]).collect();
+    designs.sort();
+    designs.dedup();
+    assert_eq!(designs.len(), front.len(), "{front:?}");
+}
+
+/// The damper of a study is stiffer than a bound, and its search begins there: it begins at the bound.
+#[test]
+fn regress_a_search_begins_within_a_bound_that_the_damper_of_its_study_breaks() {
+    let desk = desk();
+    let mut study = desk.read_json("tmd.json");
+    study["optimize"]["global"].take();
+    study["scene"]["damper"]["k2"] = json!(500);
+    desk.write_json("tmd.json", &study);
+    let plan = retune_study::read_fronts(&desk.path("fronts.json")).expect("a plan");
+    let (_, tmd) = &plan.dampers[0];
+    let bounded = retune_study::bounded(tmd, retune_study::Sweep::K2, 100.0, Vec::new()).expect("a study");
+    assert!(bounded.search().is_ok());
+    let starts = bounded.optimize.expect("a search").starts;
+    assert_eq!(starts.iter().map(|start| start.get(Parameter::K2)).collect::<Vec<_>>(), [Some(100.0)]);
 }
 
 #[test]
@@ -154,7 +177,7 @@ fn contract_a_wrong_study_of_fronts_is_refused_with_a_remedy() {
     };
     for (field, bad, words) in [
         ("dampers", json!([]), "dampers: an empty list is not allowed here: give at least one"),
-        ("k2", json!([5]), "optimize.bounds.k2: [10, 5] is not allowed here"),
+        ("k2", json!([100, 5]), "k2[1]: 5 N/m, with a smallest k2 of 10 N/m in "),
         ("samples", json!(1), "samples: 1 is not allowed here: give a whole number from 2 to 10000"),
         ("rounds", json!(25), "rounds: 25 is not allowed here: give a whole number from 0 to 24"),
     ] {
