@@ -89,7 +89,7 @@ fn contract_wrong_arguments_are_told_with_what_is_allowed() {
     assert_eq!(desk.names("."), ["study.json"], "nothing may be left behind");
     let table = studies().join("table2.json");
     let said = desk.refused(&["retention", "30000", "-1", "--study", table.to_str().expect("UTF-8")]);
-    assert_eq!(said, "error: command line: k1: -1 is not allowed here: give a finite number not below 0\n");
+    assert_eq!(said, "error: command line: k1: -1 is not allowed here: give a finite number above 0\n");
 }
 
 #[test]
