@@ -96,7 +96,7 @@ pub struct FrequencyBand {
     /// Upper end, angular frequency, rad/s.
     pub to: Positive,
     /// Number of evenly spaced frequencies, both ends included, at which runs are made; each local maximum is then refined between
-    /// its neighbours with at most 12 further runs. The result is a lower bound: a peak narrower than the spacing can be missed. The
+    /// its neighbours with at most 11 further runs. The result is a lower bound: a peak narrower than the spacing can be missed. The
     /// steady response needs no samples: it is exact over the whole band.
     #[serde(default = "samples")]
     #[schemars(range(min = 2, max = 10000))]
