@@ -161,16 +161,14 @@ impl<'a> Flow<'a> {
 
     /// The Taylor coefficients of the solution from a state, up to `order`: `[k][i]` is that of the power `k` of the coordinate `i`.
     pub fn series<T: Number>(self, start: &[T; STATE], order: usize) -> Vec<[T; STATE]> {
-        let (equations, sign, zero) = (self.equations, self.sign(), T::constant(Interval::ZERO));
+        let (all, sign, zero) = (self.equations, self.sign(), T::constant(Interval::ZERO));
         let (stretch, mut contact) = match self.mode {
-            Mode::Flight => (-equations.rest, None),
-            Mode::Contact(side) => {
-                (sign * (equations.walls[side as usize] - equations.rest), Some(Push::new(equations, side)))
-            }
+            Mode::Flight => (-all.rest, None),
+            Mode::Contact(side) => (sign * (all.walls[side as usize] - all.rest), Some(Push::new(all, side))),
         };
-        let [[m1, c1, k1], [m2, c2, k2]] = [equations.primary, equations.damper];
+        let [[m1, c1, k1], [m2, c2, k2]] = [all.primary, all.damper];
         let [per_m1, per_m2] = [m1, m2].map(|mass| Interval::ONE / mass);
-        let (omega, force) = (T::of(equations.omega), equations.force_per_mass::<T>());
+        let (omega, force) = (T::of(all.omega), all.force_per_mass::<T>());
         let (mut y, mut circle) = (vec![*start], vec![start[4].cos_sin()]);
         // In a contact: the two accelerations, which are multiplied by dt/dθ = q, and that of the speed v.
         let mut accelerations: Vec<[T; 3]> = Vec::new();
@@ -194,7 +192,7 @@ impl<'a> Flow<'a> {
                 + push.times(sign * per_m1);
             let rate = -push.times(per_m2) + -a1.times(sign);
             let slopes = if let Some(contact) = &mut contact {
-                let others = rate + contact.force[k].times(equations.inverse_masses());
+                let others = rate + contact.force[k].times(all.inverse_masses());
                 accelerations.push([rate, a1, contact.speeding(others)]);
                 let by_clock = |other: &dyn Fn(usize) -> T| product(k, |i| y[i][0], other);
                 let [rate, a1, speeding] = [0, 1, 2].map(|j| by_clock(&|i| accelerations[i][j]));

@@ -206,9 +206,8 @@ impl Orbit {
             orbit.plans = orbit.nodes.iter().zip(&orbit.plans).map(aim).collect();
             orbit.closed(equations)
         };
-        (0..WIDENED).try_fold(closed(self)?, |current, _| {
-            closed(current.orbit.minus(&applied(&current.inverse, &current.known.gaps)))
-        })
+        (0..WIDENED)
+            .try_fold(closed(self)?, |at, _| closed(at.orbit.minus(&applied(&at.inverse, &at.known.gaps))))
     }
 
     /// Improves the motion by Newton's iteration on the middles of all intervals.

@@ -21,15 +21,14 @@ struct Search<'a> {
     tried: &'a [f64],
     /// The largest half-width, relative to the states, but not less than twice that image.
     widest: f64,
-    /// Number of contractions of a proven box by the operator.
-    contractions: usize,
+    /// Number of times that the operator contracts a proven box.
+    rounds: usize,
 }
 
 /// For one motion: the largest box is tried first.
-const ONE: Search<'_> =
-    Search { tried: &[1e5, 1e4, 1e3, 100.0, 20.0, 5.0, 2.0], widest: 1e-6, contractions: 2 };
+const ONE: Search<'_> = Search { tried: &[1e5, 1e4, 1e3, 100.0, 20.0, 5.0, 2.0], widest: 1e-6, rounds: 2 };
 /// For a family, whose curvature the operator does not reduce.
-const MANY: Search<'_> = Search { tried: &[1.5, 3.0, 10.0], widest: f64::INFINITY, contractions: 0 };
+const MANY: Search<'_> = Search { tried: &[1.5, 3.0, 10.0], widest: f64::INFINITY, rounds: 0 };
 /// Least half-width of a box, relative to the states.
 const NARROWEST: f64 = 1e-13;
 
@@ -130,10 +129,10 @@ pub fn prove_over(scene: &Scene, omega: [f64; 2], start: Start<'_>) -> Result<(T
 
 /// Proves the motion near one that repeats to rounding, segment by segment; for a family for each value of its parameter.
 fn prove_orbit(equations: &Equations, closed: &Closed, search: &Search<'_>) -> Result<Theorem, Failure> {
-    let [unique, mut away] = unique_box(equations, closed, search)?;
+    let [unique, mut away] = boxes(equations, closed, search)?;
     let orbit = &closed.orbit;
     let mut known = orbit.residual(equations, &away)?;
-    for _ in 0..search.contractions {
+    for _ in 0..search.rounds {
         let smaller = krawczyk(closed, &known, &away);
         // The solution is in both.
         away = smaller.iter().zip(&away).map(|(new, old)| new.meet(*old).unwrap_or(*old)).collect();
@@ -152,11 +151,7 @@ fn prove_orbit(equations: &Equations, closed: &Closed, search: &Search<'_>) -> R
 
 /// A box about the nodes that is proven to hold exactly one solution, the first that succeeds of the sizes to try, and the smaller one that
 /// contains the solution.
-fn unique_box(
-    equations: &Equations,
-    closed: &Closed,
-    search: &Search<'_>,
-) -> Result<[Vec<Interval>; 2], Failure> {
+fn boxes(equations: &Equations, closed: &Closed, search: &Search<'_>) -> Result<[Vec<Interval>; 2], Failure> {
     let none = vec![Interval::ZERO; closed.known.gaps.len()];
     let least = krawczyk(closed, &closed.known, &none);
     let mut failure = Failure::Krawczyk(0.0, 0.0);
@@ -252,8 +247,7 @@ pub fn prove_steady(scene: &Scene, omega: [f64; 2]) -> Result<Theorem, Failure> 
 /// # Errors
 /// It may touch a wall.
 fn steady(equations: &Equations) -> Result<Theorem, Failure> {
-    let [[m1, c1, k1], [m2, c2, k2]] =
-        [equations.primary, equations.damper].map(|body| body.map(Taylor::from));
+    let [[m1, c1, k1], [m2, c2, k2]] = [equations.primary, equations.damper].map(|of| of.map(Taylor::from));
     let omega = equations.omega;
     let inertia = m2 * omega * omega;
     let (structure, spring) = ([k1 - m1 * omega * omega, omega * c1], [k2, omega * c2]);
@@ -301,11 +295,7 @@ fn multipliers(equations: &Equations) -> f64 {
     let (mut rate, mut beyond) = (0.0, (polynomial[1] / polynomial[0]).hi());
     for _ in 0..HALVINGS {
         let middle = 0.5 * (rate + beyond);
-        if has_left_roots(&shifted(polynomial, Interval::point(middle))) {
-            rate = middle
-        } else {
-            beyond = middle
-        }
+        if all_left(&shifted(polynomial, Interval::point(middle))) { rate = middle } else { beyond = middle }
     }
     // For x >= 0 all terms of e^x are positive, so the partial sum is a lower bound.
     let x = (Interval::point(2.0 * rate) * pi() / equations.omega.hull()).abs();
@@ -324,11 +314,11 @@ fn shifted(p: &[Interval], sigma: Interval) -> Vec<Interval> {
 
 /// Whether all roots of a polynomial are proven left of zero: each step of Routh's scheme removes one root left of zero (E. J. Routh,
 /// 1877).
-fn has_left_roots(p: &[Interval]) -> bool {
+fn all_left(p: &[Interval]) -> bool {
     let [first, second, ..] = *p else { return true };
     let ratio = first / second;
     let next = |k: usize| if k % 2 == 1 && k + 2 < p.len() { p[k + 1] - ratio * p[k + 2] } else { p[k + 1] };
-    let is_next = || has_left_roots(&(0..p.len() - 1).map(next).collect::<Vec<_>>());
+    let is_next = || all_left(&(0..p.len() - 1).map(next).collect::<Vec<_>>());
     first.is_positive() && second.is_positive() && is_next()
 }
 
@@ -379,7 +369,7 @@ mod tests {
         let guess = Orbit::guess(&single, ([-0.0282, 0.608, 0.183, -1.121], 1), false).expect("a guess");
         let wide = equations.at(Taylor::line(omega, half));
         let closed = guess.improved(&single).and_then(|one| one.orbit.widened(&wide)).expect("a family");
-        let [_, boxes] = unique_box(&wide, &closed, &MANY).expect("a proof");
+        let [_, boxes] = boxes(&wide, &closed, &MANY).expect("a proof");
         for end in [-1.0, 1.0] {
             let there = equations.at(Taylor::point(omega + half * end));
             let own =
