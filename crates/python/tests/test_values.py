@@ -202,3 +202,11 @@ def test_contract_a_random_motion_has_no_largest_stroke_and_no_frequency() -> No
     found = problem.evaluate(problem.start)
     assert found.value == found.largest > 0
     assert math.isnan(found.stroke) and math.isnan(found.omega_worst)
+
+
+def test_numbers_of_numpy_are_shown() -> None:
+    """A part made of numpy's scalars showed none of them."""
+    structure = rt.Structure(m1=np.float32(12), c1=np.int32(3), k1=np.float64(1000))
+    shown = repr(structure)
+    assert all(text in shown for text in ("m1", "c1", "k1")), shown
+    assert structure == rt.Structure(m1=12.0, c1=3.0, k1=1000.0)
