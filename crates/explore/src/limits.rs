@@ -29,6 +29,8 @@ pub const MOST_PARTS: f64 = 1e6;
 pub const MOST_SAMPLES: usize = 601;
 /// Most runs behind one value of an objective tuned from the page.
 pub const MOST_RUNS: usize = 20_000;
+/// Most evaluations of a descent.
+pub const MOST_EVALUATIONS_OF_DESCENT: u64 = 100;
 /// Most runs behind one value in a descent, which cannot be stopped on its way.
 pub const MOST_RUNS_OF_DESCENT: usize = 500;
 /// Most runs and motions of a search for branches.

@@ -1,7 +1,7 @@
 //! Tunes from the page's design: the refinement of the study's search, with its log, drawn over a map of the objective, and a descent by
 //! derivatives from its end, as in `retune optimize`.
 
-use crate::limits::{MOST_EVALUATIONS, MOST_RUNS, MOST_RUNS_OF_DESCENT};
+use crate::limits::{MOST_EVALUATIONS, MOST_EVALUATIONS_OF_DESCENT, MOST_RUNS, MOST_RUNS_OF_DESCENT};
 use crate::protocol::{Answer, Place};
 use crate::refused::Refused;
 use crate::start::Start;
@@ -33,7 +33,7 @@ pub fn tune(
             format!("{runs} runs behind each value are too many for this page: `retune optimize` makes them");
         return Err(Refused::of("optimize.objective", problem));
     }
-    let objective = searched(&study, &search, &search.variables);
+    let objective = searched(&study, &search, &search.variables).within(MOST_EVALUATIONS_OF_DESCENT);
     let first: Vec<f64> = search.variables.iter().map(|variable| variable.get(&search.damper)).collect();
     let map = Map::of(&search, &first);
     let quantity = study.quantity();

@@ -84,9 +84,15 @@ pub fn certify(study: &Study) -> Result<Certificate, Error> {
 
 /// Completes the certificate of a study's damper with the values for other walls and other records.
 pub(crate) fn complete(study: &Study, certificate: Certificate) -> Certificate {
+    let records = records::other_records(study, certificate.value);
+    Certificate { records, ..between_other_walls(study, certificate) }
+}
+
+/// A certificate with the value between other walls.
+pub(crate) fn between_other_walls(study: &Study, certificate: Certificate) -> Certificate {
     let (value, sensitivity) = (certificate.value, &certificate.measured.sensitivity);
     let walls = walls::other_walls(study, value, sensitivity, certificate.strikes());
-    Certificate { walls, records: records::other_records(study, value), ..certificate }
+    Certificate { walls, ..certificate }
 }
 
 /// Recomputes the certificate of the damper of a study.

@@ -9,8 +9,8 @@ use retune_model::Design;
 use retune_store::{Directory, Journal, Order};
 use retune_study::{Study, clipped};
 
-/// A known design is better if it is lower by more than this share.
-const GAIN: f64 = 1e-4;
+/// A known design is better if it is lower by more than this share, by which a search may pass over a lower design for a better verdict.
+const GAIN: f64 = 0.01;
 
 /// The searches of a job. Each has its own directory, log and certificate, and can be resumed until the whole job is finished.
 pub struct Searches<'a> {
@@ -69,7 +69,9 @@ impl<'a> Searches<'a> {
             optimize.starts = vec![clipped(&better, optimize)];
         }
         self.watch.log("a design that was found before is better: the search continues from it")?;
-        self.tune(&further, &format!("{place}-further"))
+        let further = self.tune(&further, &format!("{place}-further"))?;
+        let is_lower = value(&further.damper.design).is_some_and(|(ranked, _)| ranked < end);
+        Ok(if is_lower { further } else { optimum })
     }
 
     /// Runs the searches of several studies in parallel, each under its own name, without reporting their progress; returns the designs

@@ -192,6 +192,7 @@ pub fn bounded(
             // A search that begins at the damper of the study begins at its nearest within the bound.
             let stiffer = study.scene.damper.filter(|damper| damper.stiffness.get() > value);
             if let Some(damper) = stiffer
+                && starts.is_empty()
                 && optimize.starts.is_empty()
                 && optimize.global.is_none()
             {

@@ -175,10 +175,10 @@ impl Margin {
             }
             None => {
                 let [times, force] = [tried / own, *tried].map(short);
-                format!("No isola was found up to {times} times the force, {force} {unit}.")
+                format!("No isola was found up to {times} times {amplitude}, {force} {unit}.")
             }
             Some(Onset { value, omega, orbit }) => format!(
-                "Up to {} times the force, {} {unit}, no isola was found; with more, one begins at omega = {} rad/s, {} J ({} \
+                "Up to {} times {amplitude}, {} {unit}, no isola was found; with more, one begins at omega = {} rad/s, {} J ({} \
                  periods, impacts {}).",
                 rounded(value / own, 6),
                 rounded(*value, 8),

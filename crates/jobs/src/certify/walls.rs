@@ -49,8 +49,9 @@ pub(super) fn other_walls(
         || RESTITUTIONS.par_iter().map(at).collect(),
         || FACTORS.par_iter().filter_map(softer).collect(),
     );
-    let mut walls = Walls { contacts: String::new(), restitutions, stiffness };
-    walls.contacts = walls.summary(study, own, sensitivity);
+    let mut walls = Walls { facts: String::new(), contacts: String::new(), restitutions, stiffness };
+    walls.facts = walls.summary(study, own, sensitivity);
+    walls.contacts = format!("{}{}", walls.facts, walls.advice(study, own));
     Some(walls)
 }
 
@@ -85,6 +86,9 @@ const GROWTH: f64 = 0.1;
 /// The values of a design with other restitutions and other stiffnesses of its walls.
 #[derive(Clone, Debug, Serialize)]
 pub struct Walls {
+    /// The values in words, without advice on the study.
+    #[serde(skip)]
+    facts: String,
     contacts: String,
     /// The values for [`RESTITUTIONS`], each in place of the study's loss.
     restitutions: Vec<Changed>,
@@ -170,6 +174,11 @@ impl Walls {
         &self.contacts
     }
 
+    /// The same without advice on the study.
+    pub fn facts(&self) -> &str {
+        &self.facts
+    }
+
     pub fn all(&self) -> impl Iterator<Item = &Changed> {
         self.restitutions.iter().chain(&self.stiffness)
     }
@@ -191,18 +200,23 @@ impl Walls {
         }
         words += &self.reservations();
         if self.stiffness.iter().any(|one| one.found.value > (1.0 + GROWTH) * own.value) {
-            words += "; measure the stiffness of the walls before you build it";
-        }
-        if self.worst().is_some_and(|(_, worst)| worst.value > (1.0 + GROWTH) * own.value) {
-            let law = match Parameter::Restitution.of(&study.scene) {
-                Some(_) => "",
-                None => "give `contact.loss` a restitution alone and ",
-            };
-            words += &format!(
-                "; {law}tune for all of these restitutions: `objective.restitution` (studies/ssvi-hedged.json)"
-            );
+            words += "; measure the stiffness of the walls before you build the damper";
         }
         words
+    }
+
+    /// What to change in the study, where losses make much of a difference.
+    fn advice(&self, study: &Study, own: Amount) -> String {
+        if self.worst().is_none_or(|(_, worst)| worst.value <= (1.0 + GROWTH) * own.value) {
+            return String::new();
+        }
+        let law = match Parameter::Restitution.of(&study.scene) {
+            Some(_) => "",
+            None => "give `contact.loss` a restitution alone and ",
+        };
+        format!(
+            "; {law}tune for all of these restitutions: `objective.restitution` (studies/ssvi-hedged.json)"
+        )
     }
 
     /// The value without loss, the largest value, and over what it is the largest, in words.
@@ -268,6 +282,7 @@ mod tests {
         let broken = Outcome { keeps_limits: Some(false), ..found(300.0) };
         let late = Outcome { unsettled: 2, ..found(1.0) };
         let mut walls = Walls {
+            facts: String::new(),
             contacts: String::new(),
             restitutions: vec![
                 at(1.0, found(200.0)),

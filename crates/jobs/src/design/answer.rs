@@ -250,7 +250,7 @@ pub(super) fn findings(requirements: &Requirements, compared: &Comparison) -> Ve
         let further = if further { " `retune certify` looks at more starts, and at more force." } else { "" };
         lines.push(format!("How sure: the {name} is {words}.{further}"));
         let walls = certificate.walls.as_ref();
-        lines.extend(walls.map(|walls| format!("Other walls: {}.", legible(walls.words()))));
+        lines.extend(walls.map(|walls| format!("Other walls: {}.", legible(walls.facts()))));
     }
     let unsettled = compared.ssvi.as_ref().filter(|ssvi| ssvi.study.unsettled().is_some());
     if let Some(held) = unsettled.and_then(|ssvi| ssvi.study.transient()) {

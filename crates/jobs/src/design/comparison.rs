@@ -5,7 +5,7 @@ use super::requirements::{Constraint, Dampers, Requirements};
 use super::trust::{certified, doubt, first_feasible, is_sensitive, striking, trusted, worst_nearby};
 use super::words::{parameters, question, sized};
 use super::{Formula, ssvi, tmd};
-use crate::certify::{Certificate, complete};
+use crate::certify::{Certificate, between_other_walls};
 use crate::contacts::Contacts;
 use crate::{Error, Observer};
 use retune_model::{Measure, Parameter, Scene};
@@ -196,7 +196,7 @@ pub(super) fn compare(
     let lightest = if tmd.feasible { None } else { lightest(requirements, watch)? };
     let certificate = match choice {
         Some(What::Ssvi) => {
-            ssvi.as_ref().zip(judged.clone()).map(|(ssvi, judged)| complete(&ssvi.study, judged))
+            ssvi.as_ref().zip(judged.clone()).map(|(ssvi, judged)| between_other_walls(&ssvi.study, judged))
         }
         Some(_) => Some(certified(&tmd.study)?),
         None => None,

@@ -72,7 +72,7 @@ pub(super) fn sweep(fronts: &Fronts, sweep: Sweep) -> Drawing {
 pub(super) fn front(fronts: &Fronts) -> Drawing {
     let all = || fronts.designs.iter().chain(&fronts.given);
     let chart = |(which, &(of, label, _)): (usize, &(Sweep, &str, &str))| {
-        let point = |design: &Candidate| (design.reached(of), design.e1_max);
+        let point = |design: &Candidate| (design.reached(of), design.known());
         let most = all().map(|design| design.reached(of)).fold(0.0, f64::max);
         let mut layers = Vec::new();
         for damper in 0..fronts.plan.dampers.len() {
@@ -84,7 +84,7 @@ pub(super) fn front(fronts: &Fronts) -> Drawing {
         }
         layers.extend(given(fronts, of));
         let energy = if which == 0 { ENERGY } else { "" };
-        let y = Axis::from_zero(energy, all().map(|design| design.e1_max));
+        let y = Axis::from_zero(energy, all().map(Candidate::known));
         Chart::of(Axis::linear(label, (-0.03 * most, 1.05 * most)), y, layers, 150.0)
     };
     let charts = BOUNDED.iter().enumerate().map(chart).collect();
@@ -116,7 +116,7 @@ fn front_of(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
 /// The marks of the studies' dampers.
 fn given(fronts: &Fronts, of: Sweep) -> impl Iterator<Item = Layer> {
     fronts.given.iter().map(move |design| Layer::Marks {
-        points: vec![(design.reached(of), design.e1_max)],
+        points: vec![(design.reached(of), design.known())],
         mark: of_study(design.damper),
     })
 }

@@ -65,10 +65,9 @@ fn answer(losses: &Losses) -> Vec<String> {
         let tuned: Vec<f64> =
             losses.study.objective().restitution.into_iter().flatten().map(|e| e.get()).collect();
         let which = joined(&tuned, ", ");
+        let worst = if tuned.len() > 1 { "the worst of " } else { "" };
         let other = if tuned.contains(&e) { "" } else { ", for which it was not tuned" };
-        format!(
-            "One damper tuned for the worst of e = {which} ({words}) has at most {value}, at e = {e}{other}."
-        )
+        format!("One damper tuned for {worst}e = {which} ({words}) has at most {value}, at e = {e}{other}.")
     });
     let lossless = from_to(Tuning::Lossless, "A damper tuned as if contacts lost nothing");
     let paper = from_to(Tuning::Paper, "The paper's damper");

@@ -102,7 +102,7 @@ fn exact_an_isola_begins_at_the_margin_of_the_force() {
     let Onset { value, omega, orbit } =
         found.margin.expect("asked for").birth.expect("within twice the force");
     assert!(value > 800.0, "{value}");
-    assert!(desk.read("out2/README.md").contains("times the force"));
+    assert!(desk.read("out2/README.md").contains(" times P"));
     for (share, is_there) in [(0.999, false), (1.003, true)] {
         study["scene"]["forcing"]["P"] = (share * value).into();
         let desk = Desk::with(&study);

@@ -134,16 +134,15 @@ pub(super) fn on_edge(search: &Search, surf: &Surf) -> Vec<Parameter> {
 }
 
 /// Parameters that ended on a bound: to a thousandth of the larger of their first and last value, or to within rounding
-/// of the distance between the bounds. One in whose direction the objective is flat could as well have ended elsewhere: its bound costs nothing.
+/// of the distance between the bounds. One in whose direction the objective is flat could as well have ended elsewhere: its bound costs little.
 pub(super) fn on_bound(search: &Search, run: &Run, valleys: &[Valley]) -> Vec<Met> {
     let Some(first) = run.rows.first() else { return Vec::new() };
     let ended = |i: usize| {
         let variable = search.variables[i];
-        if valleys.iter().any(|valley| valley.variable == variable && valley.is_flat()) {
-            return None;
-        }
         let bound = met(run.minimum.x[i], first.best[i], search.options.bounds[i])?;
-        Some(Met { variable, bound })
+        // No parameter is below zero, however flat the objective is there.
+        let is_flat = |valley: &Valley| valley.variable == variable && valley.is_flat();
+        (bound == 0.0 || !valleys.iter().any(is_flat)).then_some(Met { variable, bound })
     };
     (0..search.variables.len()).filter_map(ended).collect()
 }
