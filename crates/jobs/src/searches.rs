@@ -55,23 +55,24 @@ impl<'a> Searches<'a> {
         let optimum = self.tune(study, place)?;
         let (goal, settings) = (study.goal(), study.solver.settings());
         let value = |design: &Design| {
-            let found = goal.evaluate(&study.scene_at(design)?, &settings, f64::INFINITY).ok()?;
-            Some((found.ranked, *design))
+            let found =
+                study.scene_at(design).and_then(|scene| goal.evaluate(&scene, &settings, f64::INFINITY).ok());
+            found.map_or(f64::INFINITY, |found| found.ranked)
         };
-        let end = value(&optimum.damper.design).map_or(f64::INFINITY, |(ranked, _)| ranked);
-        let best = known.iter().filter_map(value).min_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((_, better)) = best.filter(|(ranked, _)| *ranked < (1.0 - GAIN) * end) else {
+        let end = value(&optimum.damper.design);
+        let values = known.iter().map(|design| (value(design), design));
+        let best = values.min_by(|(a, _), (b, _)| a.total_cmp(b));
+        let Some((_, better)) = best.filter(|(value, _)| *value < (1.0 - GAIN) * end) else {
             return Ok(optimum);
         };
         let mut further = study.clone();
         if let Some(optimize) = &mut further.optimize {
             (optimize.global, optimize.surf) = (None, None);
-            optimize.starts = vec![clipped(&better, optimize)];
+            optimize.starts = vec![clipped(better, optimize)];
         }
         self.watch.log("a design that was found before is better: the search continues from it")?;
         let further = self.tune(&further, &format!("{place}-further"))?;
-        let is_lower = value(&further.damper.design).is_some_and(|(ranked, _)| ranked < end);
-        Ok(if is_lower { further } else { optimum })
+        Ok(if value(&further.damper.design) < end { further } else { optimum })
     }
 
     /// Runs the searches of several studies in parallel, each under its own name, without reporting their progress; returns the designs

@@ -6,7 +6,7 @@ use retune_explore::response;
 use retune_explore::session::serve;
 use retune_explore::start::Start;
 use retune_explore::tuning::tune;
-use retune_testkit::desk::Desk;
+use retune_testkit::desk::{Desk, FOOTBRIDGE, footbridge};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -270,24 +270,9 @@ fn contract_tune_from_here_stops_and_keeps_the_best() {
     assert!(tuned.get("design").is_some_and(|design| design["k2"].is_number() && design["D"].is_null()));
 }
 
-/// A footbridge of 40 t under a limit on the stroke: a simplex alone stops at 16.66 J in the kink that the limit makes; `retune optimize`, and SciPy's
-/// differential evolution of the closed form, find 13.93490 J.
 #[test]
 fn reference_a_tuning_does_not_stop_in_the_kink_of_a_limit() {
-    let desk = Desk::with(&json!({
-        "name": "footbridge",
-        "scene": {
-            "primary": { "m1": 40000, "c1": 5027, "k1": 6.317e6 },
-            "forcing": { "P": 280, "omega": 12.566 },
-            "damper": { "m2": 800, "k2": 60000, "c2": 800 }
-        },
-        "window": { "t0": 0, "T": 10 },
-        "optimize": {
-            "vary": ["k2", "c2"],
-            "objective": { "omega": { "from": 10, "to": 15 }, "response": "steady" },
-            "limits": { "stroke": 0.0012 }
-        }
-    }));
+    let desk = Desk::with(&footbridge());
     let start = Start::read(Some(&desk.path("study.json"))).expect("a study");
     let found = Mutex::new(None);
     let keep = |answer: Answer| {
@@ -297,5 +282,5 @@ fn reference_a_tuning_does_not_stop_in_the_kink_of_a_limit() {
     };
     tune(&start, &place(DamperKind::Tmd, &[]), &keep, &|| false).expect("a tuning");
     let value = found.into_inner().expect("no panic").expect("a value");
-    assert!((value / 13.934_90 - 1.0).abs() < 1e-4, "{value} J");
+    assert!((value / FOOTBRIDGE - 1.0).abs() < 1e-4, "{value} J");
 }

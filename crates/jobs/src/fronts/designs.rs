@@ -91,11 +91,8 @@ impl Fronts {
         let dominated = |design: &Candidate| self.designs.iter().any(|other| other.dominates(design));
         let mut front: Vec<&Candidate> = self.designs.iter().filter(|design| !dominated(design)).collect();
         // Of one design that several searches found, the one with a verdict.
-        let rank = |design: &Candidate| (design.known(), design.damper, design.verdict == CONTINUED);
-        front.sort_by(|a, b| {
-            let [a, b] = [a, b].map(|design| rank(design));
-            a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2)))
-        });
+        let rank = |design: &Candidate| (design.damper, design.verdict == CONTINUED);
+        front.sort_by(|a, b| a.known().total_cmp(&b.known()).then(rank(a).cmp(&rank(b))));
         front.dedup_by(|a, b| a.damper == b.damper && a.at == b.at);
         front
     }

@@ -5,7 +5,7 @@ use retune_jobs::Silent;
 use retune_jobs::tune::ends::ends;
 use retune_jobs::tune::tune;
 use retune_store::{Identity, Journal};
-use retune_testkit::desk::{Desk, committed, number};
+use retune_testkit::desk::{Desk, FOOTBRIDGE, committed, footbridge, number};
 use retune_testkit::observers::good;
 use serde_json::{Value, json};
 
@@ -14,28 +14,13 @@ fn tuned(study: &Value) -> Value {
     json!(found(good(tune(&request(&desk, "study.json", "out"), &Silent))))
 }
 
-/// A footbridge of 40 t and its TMD of 800 kg under a limit on the stroke. SciPy's differential evolution of the closed form finds 13.93490 J at
-/// k2 = 120370 N/m; a simplex alone stops at 16.66 J and 26465 N/m, where the limit makes a kink.
 #[test]
 fn reference_the_tmd_of_a_footbridge_keeps_its_stroke() {
-    let optimum = tuned(&json!({
-        "name": "footbridge",
-        "scene": {
-            "primary": { "m1": 40000, "c1": 5027, "k1": 6.317e6 },
-            "forcing": { "P": 280, "omega": 12.566 },
-            "damper": { "m2": 800, "k2": 60000, "c2": 800 }
-        },
-        "window": { "t0": 0, "T": 10 },
-        "optimize": {
-            "vary": ["k2", "c2"],
-            "objective": { "omega": { "from": 10, "to": 15 }, "response": "steady" },
-            "limits": { "stroke": 0.0012 }
-        }
-    }));
+    let optimum = tuned(&footbridge());
     assert_eq!(optimum["limits"]["feasible"], true, "{optimum}");
     let (energy, before) =
         (number(&optimum, "/E1max"), number(&optimum, "/refine/runs/0/descent/E1max_before"));
-    assert!((energy / 13.934_90 - 1.0).abs() < 1e-4 && before > 1.1 * energy, "{energy} {before}");
+    assert!((energy / FOOTBRIDGE - 1.0).abs() < 1e-4 && before > 1.1 * energy, "{energy} {before}");
     assert!(number(&optimum, "/limits/stroke") <= 0.0012);
 }
 
