@@ -161,7 +161,7 @@ pub(super) fn compare(
     watch.result(&format!("\nTMD{exact}: {name} {has}{kept}, {}", parameters(&tmd)))?;
     let (mut ssvi, mut tried, mut judged) = (None, None, None);
     if requirements.dampers != Dampers::Tmd {
-        watch.result("SSVI NES: seconds to minutes (after Ctrl-C the lines printed so far still hold)")?;
+        watch.result("SSVI NES: seconds to minutes (after Ctrl-C the lines already printed still hold)")?;
         let strokes = strokes(requirements, &tmd)?;
         let found = ssvi::best(ssvi_study, (&tmd, &strokes), &[], (journal, "ssvi"), watch)?;
         tried = Some(found.tried);
